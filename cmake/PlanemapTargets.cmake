@@ -1,0 +1,50 @@
+# What every target of the project has in common: warnings, sanitizers, assertions.
+include_guard(GLOBAL)
+
+if(PLANEMAP_SANITIZER STREQUAL "address")
+  # GCC 12's vptr check breaks calls through member pointers, which is how LCM calls its handlers.
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+elseif(PLANEMAP_SANITIZER STREQUAL "thread")
+  add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=thread)
+elseif(PLANEMAP_SANITIZER)
+  message(FATAL_ERROR "PLANEMAP_SANITIZER is '${PLANEMAP_SANITIZER}'; it takes 'address' or 'thread'")
+endif()
+
+find_program(PLANEMAP_CCACHE ccache)
+if(PLANEMAP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${PLANEMAP_CCACHE}")
+endif()
+
+# Adds our warnings to a target of ours (never to generated code).
+function(planemap_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                           -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wextra-semi)
+  if(PLANEMAP_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# planemap_add_library(name SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+# A static library whose public headers are in include/ beside it, where there is one, else its own folder src/.
+function(planemap_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  if(IS_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include")
+    target_include_directories(${name} PUBLIC "${CMAKE_CURRENT_SOURCE_DIR}/include")
+    target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/src")
+  else()
+    target_include_directories(${name} PUBLIC "${CMAKE_CURRENT_SOURCE_DIR}/src")
+  endif()
+  target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  planemap_warnings(${name})
+endfunction()
+
+# planemap_add_executable(name SOURCES ... [DEPENDS ...])
+function(planemap_add_executable name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
+  planemap_warnings(${name})
+endfunction()

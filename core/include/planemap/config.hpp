@@ -1,0 +1,153 @@
+#pragma once
+
+#include <initializer_list>
+#include <planemap/fields.hpp>
+#include <type_traits>
+
+namespace planemap {
+
+/// T is S or const S.
+template <class T, class S>
+concept MaybeConst = std::is_same_v<std::remove_const_t<T>, S>;
+
+// Each struct lists its settings once, in visit_fields(config, visit): visit(info, value) for numbers, flags and words,
+// visit(info, value, choices) for enumerations. Reading, printing and checking a configuration are all made from that list.
+
+/// Errors and limits of a Kinect-like depth sensor; Khoshelham and Elberink, Sensors 12(2), 2012.
+struct SensorConfig {
+  double min_range_m = 0.4;
+  double max_range_m = 5.0;
+  double depth_sigma_per_m = 1.425e-3;
+  double baseline_m = 0.075;
+  double disparity_step_px = 0.125;
+  double lateral_floor_px = 0.5;
+  double focal_length_px = 585.0;
+};
+
+template <MaybeConst<SensorConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"min_range_m", "nearest depth that is mapped", 0.0, 1000.0}, c.min_range_m);
+  visit(FieldInfo{"max_range_m", "farthest depth that is mapped", 0.0, 1000.0}, c.max_range_m);
+  visit(FieldInfo{"depth_sigma_per_m", "k in sigma_z = k z^2, the random error of depth z (1/m)", 0.0, 1.0},
+        c.depth_sigma_per_m);
+  visit(FieldInfo{"baseline_m", "distance between projector and camera, for the quantisation of depth", 1e-3, 10.0},
+        c.baseline_m);
+  visit(FieldInfo{"disparity_step_px", "step in which the sensor measures disparity; 0: not quantised", 0.0, 10.0},
+        c.disparity_step_px);
+  visit(FieldInfo{"lateral_floor_px", "least standard error across the ray, pixels", 0.0, 10.0}, c.lateral_floor_px);
+  visit(FieldInfo{"focal_length_px", "stands in for the focal length where a scan brings no intrinsics", 1.0, 1e5},
+        c.focal_length_px);
+}
+
+/// The uncertain grid and the assignment of points to it (paper, section III).
+struct GridConfig {
+  double cell_size_m = 0.08;
+  int density_threshold = 12;
+  bool clamp_centres = true;
+};
+
+template <MaybeConst<GridConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"cell_size_m", "edge of a cell (the paper's xi)", 0.005, 10.0}, c.cell_size_m);
+  visit(FieldInfo{"density_threshold", "a cell is dense with more points than this (the paper's tau)", 0.0, 1e9},
+        c.density_threshold);
+  visit(FieldInfo{"clamp_centres", "for the assignment, keep virtual centres inside their cells"}, c.clamp_centres);
+}
+
+/// Which evidence a cell's normal is fitted to.
+enum class NormalFit {
+  kCentres,  ///< total least squares over the virtual centres of the neighbourhood: the paper
+  kPooled,   ///< second moments of all points of the neighbourhood, weighted by 1/sigma^2
+};
+
+/// Which standard error Definition 3 perturbs a virtual centre by.
+enum class CentreError {
+  kMean,   ///< of the mean of the cell's points, sqrt(S_s)/n (Eq. 2)
+  kPoint,  ///< of one point of the cell, sqrt(S_s/n)
+};
+
+/// Uncertain normals of cells (paper, section IV.A).
+struct NormalConfig {
+  int neighbourhood_depth = 1;
+  NormalFit fit = NormalFit::kPooled;
+  CentreError centre_error = CentreError::kMean;
+  bool view_side = true;
+  double max_deviation_deg = 10.0;
+  double max_thickness_m = 0.03;
+  double refresh_growth = 0.1;
+};
+
+template <MaybeConst<NormalConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"neighbourhood_depth", "d of Definition 2: steps from a cell to the cells its normal is fitted to", 1, 4},
+        c.neighbourhood_depth);
+  visit(FieldInfo{"fit", "what a normal is fitted to"}, c.fit,
+        std::initializer_list<Choice<NormalFit>>{{"centres", NormalFit::kCentres}, {"pooled", NormalFit::kPooled}});
+  visit(FieldInfo{"centre_error", "error that Definition 3 perturbs a centre by"}, c.centre_error,
+        std::initializer_list<Choice<CentreError>>{{"mean", CentreError::kMean}, {"point", CentreError::kPoint}});
+  visit(FieldInfo{"view_side", "leave out neighbours that were seen from the other side"}, c.view_side);
+  visit(FieldInfo{"max_deviation_deg", "cells whose normal deviates by more are left out of planes", 0.0, 90.0},
+        c.max_deviation_deg);
+  visit(FieldInfo{"max_thickness_m", "cells whose neighbourhood is thicker than this and than 3 sigma start no plane; 0: off",
+                  0.0, 10.0},
+        c.max_thickness_m);
+  visit(FieldInfo{"refresh_growth", "a normal is fitted again when its cell's points grew by this share", 0.0, 10.0},
+        c.refresh_growth);
+}
+
+/// Local and global planes (paper, section IV.B, and what lifts it).
+struct PlaneConfig {
+  double normal_angle_deg = 15.0;
+  int min_cells = 12;
+  bool pooled_refit = true;
+  bool offset_test = true;
+  double cell_offset_m = 0.03;
+  double plane_offset_m = 0.02;
+  bool view_side = true;
+  bool adoption = true;
+  double bridge_gap_m = 1.0;
+  double bridge_angle_deg = 1.5;
+  double slab_sigmas = 3.0;
+  double slab_ratio = 4.0;
+  double offset_floor_m = 1e-4;
+};
+
+template <MaybeConst<PlaneConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"normal_angle_deg", "normals are similar up to this angle (the paper's phi)", 0.1, 90.0},
+        c.normal_angle_deg);
+  visit(FieldInfo{"min_cells", "a local plane of fewer cells starts no global one", 1, 1e6}, c.min_cells);
+  visit(FieldInfo{"pooled_refit", "fit planes to the second moments of their cells, not to the mean of their normals"},
+        c.pooled_refit);
+  visit(FieldInfo{"offset_test", "beside the angle, test the distance between cell and plane, plane and plane"},
+        c.offset_test);
+  visit(FieldInfo{"cell_offset_m", "a cell within this distance of a plane may join it", 1e-4, 10.0}, c.cell_offset_m);
+  visit(FieldInfo{"plane_offset_m", "planes within this distance of each other may merge", 1e-4, 10.0}, c.plane_offset_m);
+  visit(FieldInfo{"view_side", "surfaces seen from opposite sides are never one plane"}, c.view_side);
+  visit(FieldInfo{"adoption", "cells without a plane join an adjacent one by their distance to it"}, c.adoption);
+  visit(FieldInfo{"bridge_gap_m", "coplanar pieces with a gap up to this are one plane; 0: off", 0.0, 10.0},
+        c.bridge_gap_m);
+  visit(FieldInfo{"bridge_angle_deg", "pieces across a gap differ by at most this angle", 0.0, 90.0}, c.bridge_angle_deg);
+  visit(FieldInfo{"slab_sigmas", "a plane takes cells of a smaller one within this many sigma of it; 0: off", 0.0, 10.0},
+        c.slab_sigmas);
+  visit(FieldInfo{"slab_ratio", "how many times larger the plane that takes cells has to be", 1.0, 1000.0}, c.slab_ratio);
+  visit(FieldInfo{"offset_floor_m", "no plane is known better than this", 0.0, 1.0}, c.offset_floor_m);
+}
+
+/// All of the method. Values have been checked by whoever read them; the mapper asserts no more than their ranges.
+struct MapperConfig {
+  SensorConfig sensor;
+  GridConfig grid;
+  NormalConfig normals;
+  PlaneConfig planes;
+};
+
+enum class Preset {
+  kBest,   ///< the default: the paper and what was found to lift it
+  kPaper,  ///< the paper's reading, nothing more
+};
+
+/// The settings of a preset; see docs/paper.md for each value's reason.
+MapperConfig preset(Preset which);
+
+}  // namespace planemap

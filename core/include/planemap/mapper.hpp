@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <planemap/config.hpp>
+#include <planemap/scan.hpp>
+#include <planemap/snapshot.hpp>
+
+namespace planemap {
+
+/// The steps of the method (paper, Fig. 3 and Fig. 6), in order.
+enum class Stage { kAssign, kNormals, kLocalPlanes, kGlobalPlanes, kSnapshot };
+constexpr std::size_t kStageCount = 5;
+constexpr const char* name_of(Stage stage) {
+  constexpr const char* kNames[] = {"assign", "normals", "localPlanes", "globalPlanes", "snapshot"};
+  return kNames[static_cast<std::size_t>(stage)];
+}
+
+/// Told when each stage begins and ends: core knows no clock, its caller may.
+class StageObserver {
+ public:
+  virtual ~StageObserver() = default;
+  virtual void stage_begins(Stage stage) = 0;
+  virtual void stage_ends(Stage stage) = 0;
+};
+
+/// What became of one scan.
+struct ScanReport {
+  PointCounts points;
+  std::size_t touched_cells = 0;  ///< cells that got points
+  std::size_t local_planes = 0;   ///< of this scan
+  std::size_t new_planes = 0;
+  std::size_t merged_planes = 0;
+  bool planes_changed = false;    ///< the revision grew
+};
+
+/// The whole method: scans with poses in, snapshots out. Not thread-safe: one thread owns it. Deterministic: the same
+/// configuration and the same calls give the same map.
+class Mapper {
+ public:
+  /// @param epoch  names this life of the map; below 2^53
+  Mapper(const MapperConfig& config, std::uint64_t epoch);
+  ~Mapper();
+  Mapper(Mapper&&) noexcept;
+  Mapper& operator=(Mapper&&) noexcept;
+
+  /// Maps one registered scan (paper, Fig. 3).
+  /// @param T_world_sensor  takes sensor coordinates to world coordinates
+  /// @param observer        may be nullptr
+  ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer = nullptr);
+
+  /// The map as it is now; costs what changed since the last call.
+  std::shared_ptr<const MapSnapshot> snapshot(StageObserver* observer = nullptr);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace planemap

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <planemap/plane.hpp>
+#include <span>
+#include <vector>
+
+namespace planemap {
+
+class Block;
+
+/// A dense cell as readers see it.
+struct CellView {
+  Eigen::Vector3d centre_m;       ///< the virtual centre, world frame
+  Eigen::Vector3d sigma_m;        ///< the centre's standard errors along the world's axes
+  std::optional<Eigen::Vector3d> normal;  ///< unit, towards the side from which the cell was seen; empty: not known
+  double deviation_rad = 0.0;     ///< of the normal (Definition 3)
+  std::uint64_t count = 0;        ///< points
+  PlaneId plane_id = kNoPlane;
+};
+
+/// What changed between two revisions of one epoch.
+struct MapDelta {
+  std::uint64_t epoch = 0;
+  std::uint64_t since_revision = 0;
+  std::uint64_t revision = 0;
+  std::int64_t utime = 0;  ///< microseconds, of the newest mapped scan
+  std::vector<std::shared_ptr<const PlaneRecord>> changed;  ///< new and changed planes, by id
+  std::vector<RemovedPlane> removed;                        ///< by revision, then id
+};
+
+/// The map at one revision. Immutable: any number of threads may read it while the mapper goes on.
+class MapSnapshot {
+ public:
+  /// What a snapshot is made of; the mapper fills it.
+  struct Parts {
+    std::uint64_t epoch = 0;
+    std::uint64_t revision = 0;
+    std::int64_t utime = 0;
+    double cell_size_m = 0.0;
+    int density_threshold = 0;
+    std::size_t cell_count = 0;
+    std::uint64_t removed_complete_since = 0;
+    std::vector<std::shared_ptr<const PlaneRecord>> planes;
+    std::vector<RemovedPlane> removed;
+    std::vector<std::shared_ptr<const Block>> blocks;
+  };
+  explicit MapSnapshot(Parts parts) : parts_(std::move(parts)) {}
+
+  std::uint64_t epoch() const { return parts_.epoch; }
+  std::uint64_t revision() const { return parts_.revision; }
+  std::int64_t utime() const { return parts_.utime; }  ///< microseconds, of the newest mapped scan; 0: none yet
+  double cell_size_m() const { return parts_.cell_size_m; }
+  std::size_t cell_count() const { return parts_.cell_count; }  ///< stored cells, dense or not
+  std::size_t block_count() const { return parts_.blocks.size(); }
+
+  /// All planes, by id.
+  std::span<const std::shared_ptr<const PlaneRecord>> planes() const { return parts_.planes; }
+  /// The plane of that name; nullptr: there is none (now).
+  const PlaneRecord* find(PlaneId id) const;
+  /// What changed since a revision of this epoch; empty where that is not known any more: take the whole map.
+  std::optional<MapDelta> delta_since(std::uint64_t revision) const;
+  /// Every dense cell, in an order that depends on the map alone.
+  void for_each_cell(const std::function<void(const CellView&)>& visit) const;
+
+ private:
+  Parts parts_;
+};
+
+}  // namespace planemap
