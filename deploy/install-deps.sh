@@ -1,0 +1,159 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that planemap needs. Asks dpkg first, so a second run takes no time and no network.
+set -euo pipefail
+export LC_ALL=C
+
+usage() {
+  cat <<'USAGE'
+Usage: install-deps.sh [--list] [run|build|test|all]...
+
+Installs the Debian 12 packages that planemap needs; as root, or through sudo.
+  run    to run planemapd, planemap and planemap-kinect-bridge (and the demo)
+  build  to build them
+  test   to build and run the tests and the checks of CI
+  all    all of them (default)
+
+  --list     print the packages instead of installing them
+  -h, --help this text
+
+Exit codes: 0 all is installed, 1 failed, 2 wrong use.
+USAGE
+}
+
+readonly RUN_PACKAGES=(
+  iproute2            # the demo's network namespace
+  jq                  # the demo reads the daemon's status with it
+  liblcm1
+  libpcl-io1.13
+  libpng16-16
+  libprotobuf32
+  libspdlog1.10
+  libyaml-cpp0.7
+  util-linux          # unshare, taskset
+  zlib1g
+)
+readonly BUILD_PACKAGES=(
+  ccache
+  cmake
+  g++
+  libboost-dev
+  libcli11-dev
+  libeigen3-dev
+  libexpected-dev
+  liblcm-bin          # lcm-gen
+  liblcm-dev
+  libpcl-dev
+  libpng-dev
+  libprotobuf-dev
+  libspdlog-dev
+  libyaml-cpp-dev
+  ninja-build
+  nlohmann-json3-dev
+  protobuf-compiler
+  zlib1g-dev
+)
+readonly TEST_PACKAGES=(
+  clang-format
+  clang-tidy
+  git                 # CI asks it which files are the project's
+  iproute2
+  jq
+  libgmock-dev
+  libgtest-dev
+  libxml2-utils       # xmllint: is the floor plan well-formed?
+  liblcm-bin          # lcm-logplayer, lcm-logger
+  nftables            # loses datagrams on purpose
+  python3             # run-clang-tidy
+  shellcheck
+  util-linux
+)
+
+die() {
+  printf 'install-deps.sh: %s\n' "$1" >&2
+  exit "${2:-1}"
+}
+
+# Prints those of its arguments that are not installed.
+missing_packages() {
+  local installed
+  installed=$(dpkg-query --show --showformat '${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    sed -n 's/ installed$//p') || true
+  comm -23 <(printf '%s\n' "$@" | sort -u) <(sort -u <<<"$installed")
+}
+
+check_system() {
+  local id='unknown' version='unknown'
+  if [[ -r /etc/os-release ]]; then
+    # shellcheck source=/dev/null
+    id=$(. /etc/os-release && echo "${ID:-unknown}")
+    # shellcheck source=/dev/null
+    version=$(. /etc/os-release && echo "${VERSION_ID:-unknown}")
+  fi
+  command -v apt-get >/dev/null && [[ $id == debian && $version == 12 ]] && return
+  die "this script knows Debian 12, here is $id $version. Install by hand what stands for these packages:
+  $*"
+}
+
+# Runs apt-get quietly; what it said is shown if it fails.
+apt_get() {
+  local log=$1
+  shift
+  local as_root=()
+  ((EUID == 0)) || as_root=(sudo)
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q \
+    -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" >>"$log" 2>&1 </dev/null && return
+  tail -n 30 "$log" >&2
+  die "'apt-get $1' failed; all it said is in $log. Is the network there, and do the sources of apt name Debian 12 (main)?"
+}
+
+install_packages() {
+  local log
+  if ((EUID != 0)) && ! command -v sudo >/dev/null; then
+    die "needs root to install: $*. Run it as root, or install sudo."
+  fi
+  log=$(mktemp "${TMPDIR:-/tmp}/planemap-install-deps.XXXXXX.log")
+  ((EUID == 0)) || sudo -v || die "sudo did not let us in; ask who runs this machine to install: $*"
+  printf 'Installing %d packages and what they need: %s\n' "$#" "$*"
+  printf 'This may take some minutes; apt-get writes to %s\n' "$log"
+  apt_get "$log" update
+  apt_get "$log" install --yes --no-install-recommends "$@"
+  rm -f "$log"
+}
+
+main() {
+  local list_only=0 packages=() missing
+  local groups=()
+  for argument in "$@"; do
+    case $argument in
+      -h | --help) usage; exit 0 ;;
+      --list) list_only=1 ;;
+      run | build | test | all) groups+=("$argument") ;;
+      *) usage >&2; die "what is '$argument'? It takes run, build, test and all." 2 ;;
+    esac
+  done
+  ((${#groups[@]})) || groups=(all)
+  for group in "${groups[@]}"; do
+    case $group in
+      run) packages+=("${RUN_PACKAGES[@]}") ;;
+      build) packages+=("${BUILD_PACKAGES[@]}") ;;
+      test) packages+=("${TEST_PACKAGES[@]}") ;;
+      all) packages+=("${RUN_PACKAGES[@]}" "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}") ;;
+    esac
+  done
+  mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)
+  if ((list_only)); then
+    printf '%s\n' "${packages[@]}"
+    exit 0
+  fi
+
+  check_system "${packages[@]}"
+  mapfile -t missing < <(missing_packages "${packages[@]}")
+  if ((${#missing[@]})); then
+    install_packages "${missing[@]}"
+    mapfile -t missing < <(missing_packages "${packages[@]}")
+    ((${#missing[@]} == 0)) || die "apt-get ended well, yet these are not installed: ${missing[*]}"
+  fi
+  printf 'Packages for %s: all %d installed.\n' "${groups[*]}" "${#packages[@]}"
+}
+
+main "$@"
