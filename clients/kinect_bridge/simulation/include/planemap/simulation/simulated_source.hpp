@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <planemap/scan.hpp>
+#include <planemap/simulation/surface.hpp>
+#include <planemap/sources/frame_source.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace planemap::simulation {
+
+/// How the published poses differ from the true ones. Each axis on its own, in the sensor frame.
+struct PoseNoiseConfig {
+  double sigma_m = 0.0;        ///< standard deviation of the position along each axis
+  double sigma_rad = 0.0;      ///< standard deviation of the rotation about each axis
+  double correlation_s = 0.0;  ///< time constant of the errors (first-order Gauss-Markov); 0: white
+};
+
+/// Errors of the simulated Kinect: Khoshelham and Elberink, Sensors 12(2), 2012.
+struct DepthNoiseConfig {
+  double scale = 1.0;                   ///< times the random error; 0: exact depth, no quantisation, no lost returns
+  double depth_sigma_per_m = 1.425e-3;  ///< k in sigma_z = k z^2 (1/m)
+  double baseline_m = 0.075;
+  double disparity_step_px = 0.125;  ///< 0: not quantised
+  double grazing_begin_rad = 1.309;  ///< incidence from which returns get lost (75 degrees) ...
+  double grazing_end_rad = 1.484;    ///< ... and beyond which there are none (85 degrees)
+  double border_loss = 0.5;          ///< share of returns lost beside a step in depth
+};
+
+/// A simulated recording.
+struct SimulationConfig {
+  std::uint64_t seed = 1;             ///< of the apartment, the tour and the noise
+  std::optional<std::size_t> frames;  ///< spread evenly over one tour; empty: as many as the rate gives at true speed
+  bool loop = false;                  ///< go round for ever, each time with new noise
+  double rate_hz = 30.0;              ///< of the frames' utimes; the first one is at kFirstUtime
+  PinholeIntrinsics intrinsics{640, 480, 585.0, 585.0, 320.0, 240.0};
+  double min_range_m = 0.45;  ///< no returns from nearer
+  double max_range_m = 6.0;   ///< no returns from farther
+  DepthNoiseConfig depth_noise;
+  PoseNoiseConfig pose_noise;
+};
+
+constexpr std::int64_t kFirstUtime = 1'000'000;  ///< microseconds
+
+/// A robot with a Kinect drives through a rendered apartment whose planes are known. Deterministic: the same
+/// configuration gives the same frames.
+class SimulatedSource final : public sources::FrameSource {
+ public:
+  /// Builds the apartment and plans the tour. Throws std::invalid_argument if a setting is out of its range.
+  explicit SimulatedSource(const SimulationConfig& config);
+  ~SimulatedSource() override;
+
+  std::optional<sources::Frame> next() override;
+  std::optional<std::size_t> size() const override;                    ///< empty with loop
+  const std::map<std::string, std::size_t>& skipped() const override;  ///< always empty
+  std::optional<Eigen::Vector3d> gravity_direction() const override;
+
+  /// All surfaces of the apartment, by id (1, 2, ...), world frame.
+  const std::vector<Surface>& truth() const;
+  /// Time that one tour takes at the robot's true speed.
+  double tour_s() const;
+
+  // What is known about the frame that next() gave last; empty spans before the first.
+
+  /// Row-major, width * height: the surface in each pixel's line of sight, kNoSurface where there is none. Also set
+  /// where the frame has no return: mask with its depth where that matters.
+  std::span<const SurfaceId> label_image() const;
+  /// Row-major, width * height: exact depth, metres; 0 where there is no surface.
+  std::span<const float> true_depth_m() const;
+  /// Where the camera really was; the frame's own pose has the pose noise.
+  const Eigen::Isometry3d& true_T_world_sensor() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace planemap::simulation
