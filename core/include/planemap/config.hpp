@@ -11,7 +11,8 @@ template <class T, class S>
 concept MaybeConst = std::is_same_v<std::remove_const_t<T>, S>;
 
 // Each struct lists its settings once, in visit_fields(config, visit): visit(info, value) for numbers, flags and words,
-// visit(info, value, choices) for enumerations. Reading, printing and checking a configuration are all made from that list.
+// visit(info, value, choices) for enumerations. Reading, printing and checking a configuration are all made from that
+// list.
 
 /// Errors and limits of a Kinect-like depth sensor; Khoshelham and Elberink, Sensors 12(2), 2012.
 struct SensorConfig {
@@ -44,6 +45,7 @@ struct GridConfig {
   double cell_size_m = 0.08;
   int density_threshold = 12;
   bool clamp_centres = true;
+  bool view_side = true;
 };
 
 template <MaybeConst<GridConfig> Config, class Visit>
@@ -52,6 +54,7 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"density_threshold", "a cell is dense with more points than this (the paper's tau)", 0.0, 1e9},
         c.density_threshold);
   visit(FieldInfo{"clamp_centres", "for the assignment, keep virtual centres inside their cells"}, c.clamp_centres);
+  visit(FieldInfo{"view_side", "cells seen from the other side attract no points"}, c.view_side);
 }
 
 /// Which evidence a cell's normal is fitted to.
@@ -73,13 +76,15 @@ struct NormalConfig {
   CentreError centre_error = CentreError::kMean;
   bool view_side = true;
   double max_deviation_deg = 10.0;
-  double max_thickness_m = 0.03;
+  double flatness_sigmas = 2.0;
+  double flatness_floor_m = 0.005;
   double refresh_growth = 0.1;
 };
 
 template <MaybeConst<NormalConfig> Config, class Visit>
 void visit_fields(Config& c, Visit&& visit) {
-  visit(FieldInfo{"neighbourhood_depth", "d of Definition 2: steps from a cell to the cells its normal is fitted to", 1, 4},
+  visit(FieldInfo{"neighbourhood_depth", "d of Definition 2: steps from a cell to the cells its normal is fitted to", 1,
+                  4},
         c.neighbourhood_depth);
   visit(FieldInfo{"fit", "what a normal is fitted to"}, c.fit,
         std::initializer_list<Choice<NormalFit>>{{"centres", NormalFit::kCentres}, {"pooled", NormalFit::kPooled}});
@@ -88,9 +93,10 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"view_side", "leave out neighbours that were seen from the other side"}, c.view_side);
   visit(FieldInfo{"max_deviation_deg", "cells whose normal deviates by more are left out of planes", 0.0, 90.0},
         c.max_deviation_deg);
-  visit(FieldInfo{"max_thickness_m", "cells whose neighbourhood is thicker than this and than 3 sigma start no plane; 0: off",
-                  0.0, 10.0},
-        c.max_thickness_m);
+  visit(FieldInfo{"flatness_sigmas",
+                  "a neighbourhood that scatters about its plane by more sigma has no normal; 0: off", 0.0, 100.0},
+        c.flatness_sigmas);
+  visit(FieldInfo{"flatness_floor_m", "scatter that is always allowed", 0.0, 1.0}, c.flatness_floor_m);
   visit(FieldInfo{"refresh_growth", "a normal is fitted again when its cell's points grew by this share", 0.0, 10.0},
         c.refresh_growth);
 }
@@ -99,6 +105,7 @@ void visit_fields(Config& c, Visit&& visit) {
 struct PlaneConfig {
   double normal_angle_deg = 15.0;
   int min_cells = 12;
+  bool best_seeds_first = true;
   bool pooled_refit = true;
   bool offset_test = true;
   double cell_offset_m = 0.03;
@@ -109,6 +116,8 @@ struct PlaneConfig {
   double bridge_angle_deg = 1.5;
   double slab_sigmas = 3.0;
   double slab_ratio = 4.0;
+  double core_sigmas = 2.0;
+  double core_floor_m = 0.003;
   double offset_floor_m = 1e-4;
 };
 
@@ -117,20 +126,30 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"normal_angle_deg", "normals are similar up to this angle (the paper's phi)", 0.1, 90.0},
         c.normal_angle_deg);
   visit(FieldInfo{"min_cells", "a local plane of fewer cells starts no global one", 1, 1e6}, c.min_cells);
+  visit(FieldInfo{"best_seeds_first", "grow local planes from the cells with the surest normals first"},
+        c.best_seeds_first);
   visit(FieldInfo{"pooled_refit", "fit planes to the second moments of their cells, not to the mean of their normals"},
         c.pooled_refit);
   visit(FieldInfo{"offset_test", "beside the angle, test the distance between cell and plane, plane and plane"},
         c.offset_test);
   visit(FieldInfo{"cell_offset_m", "a cell within this distance of a plane may join it", 1e-4, 10.0}, c.cell_offset_m);
-  visit(FieldInfo{"plane_offset_m", "planes within this distance of each other may merge", 1e-4, 10.0}, c.plane_offset_m);
+  visit(FieldInfo{"plane_offset_m", "planes within this distance of each other may merge", 1e-4, 10.0},
+        c.plane_offset_m);
   visit(FieldInfo{"view_side", "surfaces seen from opposite sides are never one plane"}, c.view_side);
   visit(FieldInfo{"adoption", "cells without a plane join an adjacent one by their distance to it"}, c.adoption);
   visit(FieldInfo{"bridge_gap_m", "coplanar pieces with a gap up to this are one plane; 0: off", 0.0, 10.0},
         c.bridge_gap_m);
-  visit(FieldInfo{"bridge_angle_deg", "pieces across a gap differ by at most this angle", 0.0, 90.0}, c.bridge_angle_deg);
-  visit(FieldInfo{"slab_sigmas", "a plane takes cells of a smaller one within this many sigma of it; 0: off", 0.0, 10.0},
-        c.slab_sigmas);
-  visit(FieldInfo{"slab_ratio", "how many times larger the plane that takes cells has to be", 1.0, 1000.0}, c.slab_ratio);
+  visit(FieldInfo{"bridge_angle_deg", "pieces across a gap differ by at most this angle", 0.0, 90.0},
+        c.bridge_angle_deg);
+  visit(
+      FieldInfo{"slab_sigmas", "a plane takes cells of a smaller one within this many sigma of it; 0: off", 0.0, 10.0},
+      c.slab_sigmas);
+  visit(FieldInfo{"slab_ratio", "how many times larger the plane that takes cells has to be", 1.0, 1000.0},
+        c.slab_ratio);
+  visit(FieldInfo{"core_sigmas", "cells whose points scatter about their plane by more sigma don't shape it; 0: all do",
+                  0.0, 100.0},
+        c.core_sigmas);
+  visit(FieldInfo{"core_floor_m", "scatter that is always allowed", 0.0, 1.0}, c.core_floor_m);
   visit(FieldInfo{"offset_floor_m", "no plane is known better than this", 0.0, 1.0}, c.offset_floor_m);
 }
 

@@ -33,7 +33,7 @@ struct ScanReport {
   std::size_t local_planes = 0;   ///< of this scan
   std::size_t new_planes = 0;
   std::size_t merged_planes = 0;
-  bool planes_changed = false;    ///< the revision grew
+  bool planes_changed = false;  ///< the revision grew
 };
 
 /// The whole method: scans with poses in, snapshots out. Not thread-safe: one thread owns it. Deterministic: the same

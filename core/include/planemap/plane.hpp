@@ -36,12 +36,18 @@ enum class PlaneClass : std::uint8_t { kOther, kFloor, kCeiling, kWall, kTable, 
 
 constexpr std::string_view name_of(PlaneClass c) {
   switch (c) {
-    case PlaneClass::kFloor: return "floor";
-    case PlaneClass::kCeiling: return "ceiling";
-    case PlaneClass::kWall: return "wall";
-    case PlaneClass::kTable: return "table";
-    case PlaneClass::kSlope: return "slope";
-    case PlaneClass::kOther: break;
+    case PlaneClass::kFloor:
+      return "floor";
+    case PlaneClass::kCeiling:
+      return "ceiling";
+    case PlaneClass::kWall:
+      return "wall";
+    case PlaneClass::kTable:
+      return "table";
+    case PlaneClass::kSlope:
+      return "slope";
+    case PlaneClass::kOther:
+      break;
   }
   return "other";
 }
@@ -50,15 +56,15 @@ constexpr std::string_view name_of(PlaneClass c) {
 struct PlaneRecord {
   PlaneId id = kNoPlane;
   Plane plane = Plane::through(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();     ///< of (nx, ny, nz, d); rank 3; d in metres
-  Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();     ///< of its points, world frame
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< of (nx, ny, nz, d); rank 3; d in metres
+  Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();  ///< of its points, world frame
   std::uint32_t cell_count = 0;
   std::uint64_t point_count = 0;
-  std::int64_t first_seen_utime = 0;                        ///< microseconds
-  std::int64_t last_seen_utime = 0;                         ///< microseconds
-  double quality = 0.0;                                     ///< 0 to 1: expected share of points within 3 sigma of the plane
-  std::uint64_t revision = 0;                               ///< of the map, when this record was made
-  std::vector<PlaneId> merged;                              ///< ids of the planes that were merged into it, ascending
+  std::int64_t first_seen_utime = 0;  ///< microseconds
+  std::int64_t last_seen_utime = 0;   ///< microseconds
+  double quality = 0.0;               ///< 0 to 1: expected share of points within 3 sigma of the plane
+  std::uint64_t revision = 0;         ///< of the map, when this record was made
+  std::vector<PlaneId> merged;        ///< ids of the planes that were merged into it, ascending
 };
 
 /// A plane that is no more.

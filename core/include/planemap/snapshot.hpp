@@ -16,11 +16,11 @@ class Block;
 
 /// A dense cell as readers see it.
 struct CellView {
-  Eigen::Vector3d centre_m;       ///< the virtual centre, world frame
-  Eigen::Vector3d sigma_m;        ///< the centre's standard errors along the world's axes
+  Eigen::Vector3d centre_m;               ///< the virtual centre, world frame
+  Eigen::Vector3d sigma_m;                ///< the centre's standard errors along the world's axes
   std::optional<Eigen::Vector3d> normal;  ///< unit, towards the side from which the cell was seen; empty: not known
-  double deviation_rad = 0.0;     ///< of the normal (Definition 3)
-  std::uint64_t count = 0;        ///< points
+  double deviation_rad = 0.0;             ///< of the normal (Definition 3)
+  std::uint64_t count = 0;                ///< points
   PlaneId plane_id = kNoPlane;
 };
 
@@ -29,7 +29,7 @@ struct MapDelta {
   std::uint64_t epoch = 0;
   std::uint64_t since_revision = 0;
   std::uint64_t revision = 0;
-  std::int64_t utime = 0;  ///< microseconds, of the newest mapped scan
+  std::int64_t utime = 0;                                   ///< microseconds, of the newest mapped scan
   std::vector<std::shared_ptr<const PlaneRecord>> changed;  ///< new and changed planes, by id
   std::vector<RemovedPlane> removed;                        ///< by revision, then id
 };

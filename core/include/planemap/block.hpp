@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <planemap/cell.hpp>
+#include <vector>
+
+namespace planemap {
+
+/// Whole-numbered place in the grid: of a cell, or of a block of 8x8x8 cells.
+using CellIndex = Eigen::Vector3i;
+using BlockIndex = Eigen::Vector3i;
+
+constexpr int kBlockBits = 3;
+constexpr int kBlockEdge = 1 << kBlockBits;  ///< cells along an edge of a block
+constexpr int kBlockCells = kBlockEdge * kBlockEdge * kBlockEdge;
+
+/// The block that holds a cell; arithmetic shift, so it rounds down below zero too.
+inline BlockIndex block_of(const CellIndex& c) {
+  return {c.x() >> kBlockBits, c.y() >> kBlockBits, c.z() >> kBlockBits};
+}
+/// A cell's place within its block, 0 to 511; x runs fastest.
+inline int place_of(const CellIndex& c) {
+  constexpr int kMask = kBlockEdge - 1;
+  return (c.x() & kMask) | ((c.y() & kMask) << kBlockBits) | ((c.z() & kMask) << (2 * kBlockBits));
+}
+inline CellIndex cell_at(const BlockIndex& block, int place) {
+  constexpr int kMask = kBlockEdge - 1;
+  return {(block.x() << kBlockBits) + (place & kMask), (block.y() << kBlockBits) + ((place >> kBlockBits) & kMask),
+          (block.z() << kBlockBits) + (place >> (2 * kBlockBits))};
+}
+
+/// 8x8x8 cells, stored packed: a plane through a block touches a fifth of its cells.
+class Block {
+ public:
+  explicit Block(const BlockIndex& index) : index_(index) { ordinal_.fill(kAbsent); }
+
+  const BlockIndex& index() const { return index_; }
+  std::size_t size() const { return cells_.size(); }
+  /// The cell that was added as the n-th. Cells keep their ordinal for ever.
+  Cell& cell(std::size_t ordinal) { return cells_[ordinal]; }
+  const Cell& cell(std::size_t ordinal) const { return cells_[ordinal]; }
+  int place(std::size_t ordinal) const { return places_[ordinal]; }
+  CellIndex cell_index(std::size_t ordinal) const { return cell_at(index_, places_[ordinal]); }
+
+  /// Ordinal of the cell at a place; -1: never observed.
+  int find(int place) const {
+    const std::uint16_t ordinal = ordinal_[static_cast<std::size_t>(place)];
+    return ordinal == kAbsent ? -1 : ordinal;
+  }
+  /// Ordinal of the cell at a place, which is made where there was none.
+  int find_or_add(int place);
+
+ private:
+  static constexpr std::uint16_t kAbsent = 0xffff;
+
+  BlockIndex index_;
+  std::array<std::uint16_t, kBlockCells> ordinal_;
+  std::vector<std::uint16_t> places_;
+  std::vector<Cell> cells_;
+};
+
+inline int Block::find_or_add(int place) {
+  std::uint16_t& ordinal = ordinal_[static_cast<std::size_t>(place)];
+  if (ordinal == kAbsent) {
+    ordinal = static_cast<std::uint16_t>(cells_.size());
+    cells_.emplace_back();
+    places_.push_back(static_cast<std::uint16_t>(place));
+  }
+  return ordinal;
+}
+
+}  // namespace planemap

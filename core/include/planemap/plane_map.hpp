@@ -1,0 +1,119 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <planemap/config.hpp>
+#include <planemap/local_planes.hpp>
+#include <planemap/plane.hpp>
+#include <planemap/plane_statistics.hpp>
+#include <planemap/uncertain_grid.hpp>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace planemap {
+
+/// Where planes are, in cubes of half the gap that is bridged: finds planes that are near each other without touching.
+class CoarseIndex {
+ public:
+  explicit CoarseIndex(double edge_m) : inverse_edge_(1.0 / edge_m) {}
+
+  void add(const Eigen::Vector3d& p_world_m, PlaneSlot plane) { change(p_world_m, plane, 1); }
+  void remove(const Eigen::Vector3d& p_world_m, PlaneSlot plane) { change(p_world_m, plane, -1); }
+  /// Adds to `found` the planes with cells at most `steps` cubes from the point's cube; may name a plane twice.
+  void planes_near(const Eigen::Vector3d& p_world_m, int steps, std::vector<PlaneSlot>& found) const;
+  /// Names the cube of a point; equal for points in one cube.
+  std::uint64_t key_of(const Eigen::Vector3d& p_world_m) const;
+
+ private:
+  struct Entry {
+    PlaneSlot plane;
+    std::int32_t cells;
+  };
+  void change(const Eigen::Vector3d& p_world_m, PlaneSlot plane, std::int32_t by);
+  Eigen::Vector3i cube_of(const Eigen::Vector3d& p_world_m) const;
+  static std::uint64_t cube_key(const Eigen::Vector3i& cube);
+
+  double inverse_edge_;
+  std::unordered_map<std::uint64_t, std::vector<Entry>> cubes_;
+};
+
+/// What the global step did with one scan.
+struct GlobalReport {
+  std::size_t new_planes = 0;
+  std::size_t merged_planes = 0;
+  std::size_t removed_planes = 0;
+};
+
+/// The global planes (paper, section IV.B.2; Fig. 3, lines 6-9). Ids grow and are never used again; the order of all
+/// steps depends on the scans alone, so equal inputs give equal maps.
+class PlaneMap {
+ public:
+  PlaneMap(const GridConfig& grid, const PlaneConfig& planes);
+
+  /// Takes a cell's evidence out of its plane, before the cell changes; attach() brings it back.
+  void detach(const UncertainGrid& grid, CellRef ref);
+  /// Takes the changed cell's evidence into its plane again, or lets go of a cell that has left its plane.
+  void attach(UncertainGrid& grid, CellRef ref);
+
+  /// Merges the local planes of a scan into the global ones: absorbed, merge, or new.
+  GlobalReport merge(UncertainGrid& grid, std::span<const LocalPlane> local, std::span<const CellChange> changes,
+                     std::int64_t utime);
+
+  /// Records of the planes that changed since the last call, made anew; `records` holds all, by id.
+  /// @return whether anything changed
+  bool update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
+                      std::vector<RemovedPlane>& removed);
+  /// Whether a plane changed since the last update_records().
+  bool changed() const { return !dirty_.empty() || !removed_.empty(); }
+  /// The id of the plane that a cell is labelled with.
+  static PlaneId id_of(PlaneSlot slot) { return slot; }
+
+ private:
+  struct State {
+    explicit State(const Eigen::Vector3d& origin_m) : statistics(origin_m) {}
+    PlaneStatistics statistics;
+    PlaneFit fit;
+    std::vector<CellRef> cells;  ///< also cells that have left; a cell's own label decides
+    std::vector<PlaneId> merged;
+    std::int64_t first_seen_utime = 0;
+    std::int64_t last_seen_utime = 0;
+    std::size_t cells_when_bridged = 0;
+    bool dirty = false;
+  };
+
+  State& state(PlaneSlot slot) { return *states_[slot]; }
+  const State& state(PlaneSlot slot) const { return *states_[slot]; }
+  void mark_dirty(PlaneSlot slot);
+  void refit(PlaneSlot slot);
+
+  void join(UncertainGrid& grid, CellRef ref, PlaneSlot slot);
+  void leave(UncertainGrid& grid, CellRef ref);
+  float member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const;
+  double band_m(const Cell& cell, const PlaneFit& fit) const;
+
+  bool agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
+             double max_angle_rad, double max_offset_m) const;
+  void merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
+  std::vector<PlaneSlot> touching(const UncertainGrid& grid, const LocalPlane& local) const;
+  PlaneSlot absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report);
+  void start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
+  PlaneSlot merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b);
+  void adopt(UncertainGrid& grid, std::span<const CellChange> changes);
+  PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref) const;
+  void bridge(UncertainGrid& grid, GlobalReport& report);
+  PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const;
+  void dissolve_small(UncertainGrid& grid, GlobalReport& report);
+  PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;
+
+  GridConfig grid_config_;
+  PlaneConfig config_;
+  double max_angle_rad_;
+  std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed
+  std::vector<PlaneSlot> dirty_;
+  std::vector<RemovedPlane> removed_;  ///< since the last update_records()
+  CoarseIndex coarse_;
+};
+
+}  // namespace planemap

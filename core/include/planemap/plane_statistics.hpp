@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <planemap/cell.hpp>
+#include <planemap/config.hpp>
+#include <planemap/plane.hpp>
+
+namespace planemap {
+
+/// A plane fitted to evidence.
+struct PlaneFit {
+  Plane plane = Plane::through(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();  ///< on the plane, world frame
+  Eigen::Vector3d tangent_1 = Eigen::Vector3d::UnitX();  ///< direction of least spread within the plane
+  Eigen::Vector3d tangent_2 = Eigen::Vector3d::UnitY();  ///< direction of greatest spread
+  double spread_1_m2 = 0.0;                              ///< variance of the evidence along tangent_1
+  double spread_2_m2 = 0.0;                              ///< and along tangent_2
+  double residual_m2 = 0.0;                              ///< and along the normal
+  double deviation_rad = 0.0;                            ///< of the normal
+
+  /// Length of a uniform strip with the greatest spread, metres.
+  double extent_m() const;
+};
+
+/// What is known of a set of cells as one plane: sums, so cells can join and leave (paper, section IV.B: "plane
+/// statistics similarly to cell statistics").
+class PlaneStatistics {
+ public:
+  explicit PlaneStatistics(const Eigen::Vector3d& origin_m) : origin_m_(origin_m) {}
+
+  /// Takes a cell in, with cell.plane_weight as the weight of each of its points, or out: then exactly as it was taken
+  /// in.
+  /// @param centre_m  the cell's geometric centre
+  void add(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, 1.0); }
+  void remove(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, -1.0); }
+  /// Takes in all that another set holds.
+  void add(const PlaneStatistics& other);
+
+  std::size_t cell_count() const { return static_cast<std::size_t>(cells_); }
+  double point_count() const { return points_; }
+  double core_point_count() const { return core_points_; }
+  double weight() const { return pooled_.weight; }
+  const Eigen::Vector3d& view() const { return view_; }
+
+  /// Fits the plane. Pooled: to the weighted second moments of the points. Otherwise as the paper: the mean of the
+  /// cells' normals, through the mean of the virtual centres. Empty where the cells span no plane.
+  std::optional<PlaneFit> fit(bool pooled) const;
+  /// Mean square distance of the evidence to a plane, square metres. @pre weight() > 0
+  double mean_square_distance_m2(const Plane& plane) const {
+    return pooled_.mean_square_distance(plane.normal(), plane.signed_distance_m(origin_m_));
+  }
+
+ private:
+  void accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign);
+  std::optional<PlaneFit> fit_pooled() const;
+  std::optional<PlaneFit> fit_normals() const;
+  double normal_deviation_rad() const;
+
+  Eigen::Vector3d origin_m_;
+  Moments pooled_;                                        ///< points, weighted, about origin_m_
+  Moments centres_;                                       ///< virtual centres, each with weight 1, about origin_m_
+  Eigen::Vector3d normal_sum_ = Eigen::Vector3d::Zero();  ///< Definition 1's L, of normals
+  double deviation_sum_rad2_ = 0.0;                       ///< Definition 1's S_s, of normals
+  double normals_ = 0.0;                                  ///< Definition 1's n, of normals
+  Eigen::Vector3d view_ = Eigen::Vector3d::Zero();
+  double cells_ = 0.0;
+  double points_ = 0.0;
+  double core_points_ = 0.0;
+};
+
+/// Expected squared distance of two uncertain unit normals, by Eq. 7: |a - b|^2 and both variances.
+inline double expected_squared_distance(const Eigen::Vector3d& a, double deviation_a_rad, const Eigen::Vector3d& b,
+                                        double deviation_b_rad) {
+  return (a - b).squaredNorm() + deviation_a_rad * deviation_a_rad + deviation_b_rad * deviation_b_rad;
+}
+
+/// The squared distance of two unit normals with an angle between them: (2 sin(angle / 2))^2.
+double squared_chord(double angle_rad);
+
+/// Weight of each point of a cell in the plane's moments: 1 / sigma^2 along the normal.
+double point_weight(const CellSums& sums, const Eigen::Vector3d& normal);
+
+/// Covariance of (nx, ny, nz, d) from a fit whose weights are 1 / sigma^2; rank 3.
+/// @param offset_floor_m  standard error of the offset that is added to what the points say; the tilts get it at half
+/// the extent
+Eigen::Matrix4d covariance_of(const PlaneFit& fit, double weight, double offset_floor_m);
+
+}  // namespace planemap

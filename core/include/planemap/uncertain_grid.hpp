@@ -1,0 +1,111 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <planemap/block.hpp>
+#include <unordered_map>
+#include <vector>
+
+namespace planemap {
+
+/// Where a cell is stored. Cells stay where they were made, so a reference holds as long as the grid.
+struct CellRef {
+  std::uint32_t block = 0;    ///< slot of the block in the grid
+  std::uint32_t ordinal = 0;  ///< of the cell in the block
+
+  bool operator==(const CellRef&) const = default;
+};
+
+/// The dynamic grid (paper, section III): a hash of blocks in the world frame. Blocks are shared with snapshots and
+/// copied before the first write after that. Not thread-safe: one thread owns it.
+class UncertainGrid {
+ public:
+  explicit UncertainGrid(double cell_size_m);  ///< Throws std::invalid_argument unless finite and > 0.
+
+  double cell_size_m() const { return cell_size_m_; }
+  CellIndex index_of(const Eigen::Vector3d& p_world_m) const;        ///< floor(): half-open cells, also below zero.
+  Eigen::Vector3d geometric_centre_m(const CellIndex& index) const;  ///< of the cube, world frame
+  Eigen::Vector3d geometric_centre_m(CellRef ref) const { return geometric_centre_m(index_of(ref)); }
+  CellIndex index_of(CellRef ref) const { return blocks_[ref.block]->cell_index(ref.ordinal); }
+  std::size_t cell_count() const { return cell_count_; }
+  std::size_t block_count() const { return blocks_.size(); }
+
+  std::optional<CellRef> find(const CellIndex& index) const;  ///< Empty: never observed.
+  /// The cell at the index, which is made where there was none. Its block becomes writable.
+  CellRef find_or_add(const CellIndex& index);
+  const Cell& cell(CellRef ref) const { return blocks_[ref.block]->cell(ref.ordinal); }
+  /// For changes; copies the block where a snapshot shares it.
+  Cell& writable(CellRef ref) { return writable_block(ref.block).cell(ref.ordinal); }
+
+  /// The cell's virtual centre, Eq. 1: E[C_u] = L / n, world frame. @pre the cell has points
+  Eigen::Vector3d virtual_centre_m(CellRef ref) const { return geometric_centre_m(ref) + cell(ref).sums.points.mean(); }
+
+  /// Calls visit(CellRef) for each stored cell at most `depth` steps away, 26-connected (Definition 2), the cell itself
+  /// included.
+  template <class Visit>
+  void for_each_neighbour(CellRef ref, int depth, Visit&& visit) const;
+  /// Calls visit(CellRef) for each stored cell.
+  template <class Visit>
+  void for_each_cell(Visit&& visit) const;
+
+  /// The blocks as they are now, in the order in which they were made; they are copied before they change again.
+  const std::vector<std::shared_ptr<const Block>>& share();
+
+ private:
+  static constexpr std::uint32_t kNoBlock = 0xffffffff;
+  struct IndexHash {
+    std::size_t operator()(const BlockIndex& i) const {
+      // Teschner et al., Optimized Spatial Hashing, 2003; then mixed, since the buckets are taken from the low bits.
+      std::uint64_t h = static_cast<std::uint32_t>(i.x()) * 73856093ULL ^
+                        static_cast<std::uint32_t>(i.y()) * 19349663ULL ^
+                        static_cast<std::uint32_t>(i.z()) * 83492791ULL;
+      h ^= h >> 29;
+      return static_cast<std::size_t>(h * 0x9e3779b97f4a7c15ULL);
+    }
+  };
+
+  std::uint32_t block_slot(const BlockIndex& index) const;
+  std::uint32_t make_block(const BlockIndex& index);
+  Block& writable_block(std::uint32_t slot);
+
+  double cell_size_m_;
+  double inverse_cell_size_;
+  std::size_t cell_count_ = 0;
+  std::unordered_map<BlockIndex, std::uint32_t, IndexHash> slots_;
+  std::vector<std::shared_ptr<const Block>> blocks_;  ///< what readers see; the same objects as owned_
+  std::vector<std::shared_ptr<Block>> owned_;
+  std::vector<bool> shared_;                               ///< a snapshot may hold the block
+  std::vector<std::array<std::uint32_t, 27>> neighbours_;  ///< slots of the blocks around each block
+};
+
+template <class Visit>
+void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) const {
+  const Block& home = *blocks_[ref.block];
+  const CellIndex index = home.cell_index(ref.ordinal);
+  const auto& around = neighbours_[ref.block];
+  for (int dz = -depth; dz <= depth; ++dz) {
+    for (int dy = -depth; dy <= depth; ++dy) {
+      for (int dx = -depth; dx <= depth; ++dx) {
+        const CellIndex there = index + CellIndex(dx, dy, dz);
+        const BlockIndex step = block_of(there) - home.index();
+        const std::uint32_t slot =
+            around[static_cast<std::size_t>(step.x() + 1 + 3 * (step.y() + 1) + 9 * (step.z() + 1))];
+        if (slot == kNoBlock) continue;
+        const int ordinal = blocks_[slot]->find(place_of(there));
+        if (ordinal >= 0) visit(CellRef{slot, static_cast<std::uint32_t>(ordinal)});
+      }
+    }
+  }
+}
+
+template <class Visit>
+void UncertainGrid::for_each_cell(Visit&& visit) const {
+  for (std::uint32_t slot = 0; slot < blocks_.size(); ++slot) {
+    for (std::uint32_t ordinal = 0; ordinal < blocks_[slot]->size(); ++ordinal) visit(CellRef{slot, ordinal});
+  }
+}
+
+}  // namespace planemap

@@ -1,0 +1,122 @@
+#include "planemap/cell_normals.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace planemap {
+
+namespace {
+
+/// Weight of a cell's points: 1 / sigma^2 of its mean point. Points without error are taken as good to a tenth of a
+/// millimetre.
+double point_weight(const CellSums& sums) {
+  constexpr double kLeastVariance = 1e-8;
+  return 1.0 / std::max(sums.error_m2.sum() / sums.count(), kLeastVariance);
+}
+
+}  // namespace
+
+double min_max_deviation_rad(std::span<const UncertainCentre> centres, const Eigen::Vector3d& normal,
+                             const Eigen::Vector3d& tangent_1, const Eigen::Vector3d& tangent_2) {
+  double moved_1 = 0.0;
+  double moved_2 = 0.0;
+  double spread_1 = 0.0;
+  double spread_2 = 0.0;
+  for (const UncertainCentre& centre : centres) {
+    const double sigma = std::sqrt(normal.cwiseAbs2().dot(centre.variance_m2));
+    const double t1 = tangent_1.dot(centre.offset_m);
+    const double t2 = tangent_2.dot(centre.offset_m);
+    moved_1 += std::abs(t1) * sigma;
+    moved_2 += std::abs(t2) * sigma;
+    spread_1 += t1 * t1;
+    spread_2 += t2 * t2;
+  }
+  if (!(spread_1 > 0.0 && spread_2 > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::atan(std::max(moved_1 / spread_1, moved_2 / spread_2));
+}
+
+void NormalEstimator::gather(const UncertainGrid& grid, CellRef ref) {
+  neighbourhood_.clear();
+  grid.for_each_neighbour(ref, config_.neighbourhood_depth, [&](CellRef other) {
+    if (grid.cell(other).sums.count() > 0.0) neighbourhood_.push_back(other);
+  });
+}
+
+std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const UncertainGrid& grid, CellRef ref) const {
+  if (neighbourhood_.size() < 3) return std::nullopt;
+  const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
+  const bool pooled = config_.fit == NormalFit::kPooled;
+  Moments sum;
+  Eigen::Vector3d weighted_error = Eigen::Vector3d::Zero();
+  for (const CellRef other : neighbourhood_) {
+    const CellSums& sums = grid.cell(other).sums;
+    const Eigen::Vector3d shift = grid.geometric_centre_m(other) - origin;
+    if (pooled) {
+      const double w = point_weight(sums);
+      sum.add(sums.points, w, shift);
+      weighted_error += w * sums.error_m2;
+    } else {
+      const Eigen::Vector3d centre = sums.points.mean() + shift;
+      sum.add(Moments{1.0, centre, Symmetric3::outer(centre)});
+    }
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(sum.covariance());
+  if (!(solver.eigenvalues()(1) > 1e-12)) return std::nullopt;  // a point or a line spans no plane
+  Fit fit{sum.mean(),
+          solver.eigenvectors().col(0),
+          solver.eigenvectors().col(1),
+          solver.eigenvectors().col(2),
+          std::max(solver.eigenvalues()(0), 0.0),
+          0.0};
+  if (fit.normal.dot(grid.cell(ref).sums.view.cast<double>()) < 0.0) fit.normal = -fit.normal;
+  fit.expected_variance_m2 = fit.normal.cwiseAbs2().dot(weighted_error) / sum.weight;
+  return fit;
+}
+
+bool NormalEstimator::drop_other_side(const UncertainGrid& grid, CellRef ref, const Eigen::Vector3d& normal) {
+  const auto other_side = [&](CellRef other) {
+    return other != ref && normal.dot(grid.cell(other).sums.view.cast<double>()) < 0.0;
+  };
+  const auto end = std::remove_if(neighbourhood_.begin(), neighbourhood_.end(), other_side);
+  const bool dropped = end != neighbourhood_.end();
+  neighbourhood_.erase(end, neighbourhood_.end());
+  return dropped;
+}
+
+std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, CellRef ref) {
+  gather(grid, ref);
+  std::optional<Fit> fit = fit_gathered(grid, ref);
+  if (fit && config_.view_side && drop_other_side(grid, ref, fit->normal)) fit = fit_gathered(grid, ref);
+  if (!fit) return std::nullopt;
+  if (config_.flatness_sigmas > 0.0) {
+    const double allowed = config_.flatness_sigmas * config_.flatness_sigmas * fit->expected_variance_m2 +
+                           config_.flatness_floor_m * config_.flatness_floor_m;
+    if (fit->variance_m2 > allowed) return std::nullopt;
+  }
+  const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
+  centres_.clear();
+  for (const CellRef other : neighbourhood_) {
+    const CellSums& sums = grid.cell(other).sums;
+    const double n = sums.count();
+    const double share = config_.centre_error == CentreError::kMean ? 1.0 / (n * n) : 1.0 / n;
+    centres_.push_back(
+        {sums.points.mean() + grid.geometric_centre_m(other) - origin - fit->centroid_m, sums.error_m2 * share});
+  }
+  return UncertainNormal{fit->normal, min_max_deviation_rad(centres_, fit->normal, fit->tangent_1, fit->tangent_2)};
+}
+
+void NormalEstimator::refresh(UncertainGrid& grid, CellRef ref) {
+  const Cell& cell = grid.cell(ref);
+  const double count = cell.sums.count();
+  if (cell.normal_count > 0.0F && count < cell.normal_count * (1.0 + config_.refresh_growth)) return;
+  const std::optional<UncertainNormal> fitted = fit(grid, ref);
+  Cell& changed = grid.writable(ref);
+  changed.normal_count = static_cast<float>(count);
+  changed.normal = fitted ? Eigen::Vector3f(fitted->normal.cast<float>()) : Eigen::Vector3f::Zero();
+  changed.deviation_rad = fitted ? static_cast<float>(fitted->deviation_rad) : 0.0F;
+}
+
+}  // namespace planemap

@@ -1,0 +1,141 @@
+#include "planemap/mapper.hpp"
+
+#include "planemap/assignment.hpp"
+#include "planemap/cell_normals.hpp"
+#include "planemap/local_planes.hpp"
+#include "planemap/plane_map.hpp"
+#include "planemap/uncertain_grid.hpp"
+
+namespace planemap {
+
+namespace {
+
+/// Tells the observer of a stage for as long as it lives.
+class StageScope {
+ public:
+  StageScope(StageObserver* observer, Stage stage) : observer_(observer), stage_(stage) {
+    if (observer_ != nullptr) observer_->stage_begins(stage_);
+  }
+  ~StageScope() {
+    if (observer_ != nullptr) observer_->stage_ends(stage_);
+  }
+  StageScope(const StageScope&) = delete;
+  StageScope& operator=(const StageScope&) = delete;
+
+ private:
+  StageObserver* observer_;
+  Stage stage_;
+};
+
+/// Removed planes that a snapshot still names; a reader that is farther behind takes the whole map.
+constexpr std::size_t kKeptRemovals = 4096;
+
+}  // namespace
+
+class Mapper::Impl {
+ public:
+  Impl(const MapperConfig& config, std::uint64_t epoch)
+      : config_(config),
+        epoch_(epoch),
+        grid_(config.grid.cell_size_m),
+        assigner_(config.sensor, config.grid),
+        normals_(config.normals),
+        local_(config.grid, config.normals, config.planes),
+        planes_(config.grid, config.planes) {}
+
+  ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer) {
+    ScanReport report;
+    utime_ = std::max(utime_, utime_of(scan));
+    assign(scan, T_world_sensor, observer, report);
+    fit_normals(observer);
+    std::vector<LocalPlane> local;
+    {
+      const StageScope scope(observer, Stage::kLocalPlanes);  // Fig. 3, lines 4 and 5
+      local = local_.extract(grid_, assigner_.changes());
+    }
+    {
+      const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
+      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), utime_of(scan));
+      assigner_.finish(grid_);
+      report.local_planes = local.size();
+      report.new_planes = global.new_planes;
+      report.merged_planes = global.merged_planes;
+    }
+    report.planes_changed = planes_.changed();
+    if (report.planes_changed) ++revision_;
+    return report;
+  }
+
+  std::shared_ptr<const MapSnapshot> snapshot(StageObserver* observer) {
+    const StageScope scope(observer, Stage::kSnapshot);
+    planes_.update_records(revision_, records_, removed_);
+    trim_removals();
+    MapSnapshot::Parts parts;
+    parts.epoch = epoch_;
+    parts.revision = revision_;
+    parts.utime = utime_;
+    parts.cell_size_m = config_.grid.cell_size_m;
+    parts.density_threshold = config_.grid.density_threshold;
+    parts.cell_count = grid_.cell_count();
+    parts.removed_complete_since = removed_complete_since_;
+    parts.planes = records_;
+    parts.removed = removed_;
+    parts.blocks = grid_.share();
+    return std::make_shared<const MapSnapshot>(std::move(parts));
+  }
+
+ private:
+  /// Fig. 3, lines 2 and 3: map the scan onto the grid, maintain the cells' statistics.
+  void assign(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer, ScanReport& report) {
+    const StageScope scope(observer, Stage::kAssign);
+    report.points = assigner_.assign(grid_, scan, T_world_sensor);
+    report.touched_cells = assigner_.changes().size();
+    for (const CellChange& change : assigner_.changes()) {
+      planes_.detach(grid_, change.cell);
+      grid_.writable(change.cell).sums.add(change.added);
+    }
+  }
+
+  void fit_normals(StageObserver* observer) {
+    const StageScope scope(observer, Stage::kNormals);
+    for (const CellChange& change : assigner_.changes()) {
+      if (grid_.cell(change.cell).sums.count() > config_.grid.density_threshold) normals_.refresh(grid_, change.cell);
+    }
+    for (const CellChange& change : assigner_.changes()) planes_.attach(grid_, change.cell);
+  }
+
+  void trim_removals() {
+    if (removed_.size() <= kKeptRemovals) return;
+    const std::size_t surplus = removed_.size() - kKeptRemovals;
+    removed_complete_since_ = removed_[surplus - 1].revision;
+    removed_.erase(removed_.begin(), removed_.begin() + static_cast<std::ptrdiff_t>(surplus));
+  }
+
+  MapperConfig config_;
+  std::uint64_t epoch_;
+  std::uint64_t revision_ = 0;
+  std::int64_t utime_ = 0;
+  UncertainGrid grid_;
+  Assigner assigner_;
+  NormalEstimator normals_;
+  LocalPlaneExtractor local_;
+  PlaneMap planes_;
+  std::vector<std::shared_ptr<const PlaneRecord>> records_;
+  std::vector<RemovedPlane> removed_;
+  std::uint64_t removed_complete_since_ = 0;
+};
+
+Mapper::Mapper(const MapperConfig& config, std::uint64_t epoch) : impl_(std::make_unique<Impl>(config, epoch)) {}
+Mapper::~Mapper() = default;
+Mapper::Mapper(Mapper&&) noexcept = default;
+Mapper& Mapper::operator=(Mapper&&) noexcept = default;
+
+ScanReport Mapper::integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer) {
+  return impl_->integrate(scan, T_world_sensor, observer);
+}
+
+std::shared_ptr<const MapSnapshot> Mapper::snapshot(StageObserver* observer) {
+  return impl_->snapshot(observer);
+}
+
+}  // namespace planemap

@@ -1,0 +1,375 @@
+#include "planemap/plane_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace planemap {
+
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+template <class T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+}  // namespace
+
+PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes)
+    : grid_config_(grid),
+      config_(planes),
+      max_angle_rad_(planes.normal_angle_deg * kRadPerDeg),
+      states_(1),
+      coarse_(0.5 * std::max(planes.bridge_gap_m, 4.0 * grid.cell_size_m)) {}
+
+void PlaneMap::mark_dirty(PlaneSlot slot) {
+  if (std::exchange(state(slot).dirty, true)) return;
+  dirty_.push_back(slot);
+}
+
+void PlaneMap::refit(PlaneSlot slot) {
+  if (const auto fit = state(slot).statistics.fit(config_.pooled_refit)) state(slot).fit = *fit;
+}
+
+// Membership of cells.
+
+double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
+  return std::max(config_.cell_offset_m, config_.slab_sigmas * std::sqrt(cell.sums.point_variance(fit.plane.normal())));
+}
+
+float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
+  const Cell& cell = grid.cell(ref);
+  const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
+  // A cell at an edge also holds points of another surface: it belongs to the plane but does not shape it.
+  const double spread_m2 = cell.sums.points.mean_square_distance(fit.plane.normal(), d_m);
+  const double expected_m2 = cell.sums.point_variance(fit.plane.normal());
+  const double allowed_m2 =
+      config_.core_sigmas * config_.core_sigmas * expected_m2 + config_.core_floor_m * config_.core_floor_m;
+  if (config_.core_sigmas > 0.0 && spread_m2 > allowed_m2) return 0.0F;
+  return static_cast<float>(point_weight(cell.sums, fit.plane.normal()));
+}
+
+void PlaneMap::join(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
+  Cell& cell = grid.writable(ref);
+  cell.plane = slot;
+  cell.plane_weight = member_weight(grid, ref, state(slot).fit);
+  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+  state(slot).statistics.add(cell, centre_m);
+  state(slot).cells.push_back(ref);
+  coarse_.add(centre_m, slot);
+  mark_dirty(slot);
+}
+
+void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
+  Cell& cell = grid.writable(ref);
+  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+  state(cell.plane).statistics.remove(cell, centre_m);
+  coarse_.remove(centre_m, cell.plane);
+  mark_dirty(cell.plane);
+  cell.plane = kNoSlot;
+}
+
+void PlaneMap::detach(const UncertainGrid& grid, CellRef ref) {
+  const Cell& cell = grid.cell(ref);
+  if (cell.plane != kNoSlot) state(cell.plane).statistics.remove(cell, grid.geometric_centre_m(ref));
+}
+
+void PlaneMap::attach(UncertainGrid& grid, CellRef ref) {
+  if (grid.cell(ref).plane == kNoSlot) return;
+  Cell& cell = grid.writable(ref);
+  State& plane = state(cell.plane);
+  cell.plane_weight = member_weight(grid, ref, plane.fit);
+  plane.statistics.add(cell, grid.geometric_centre_m(ref));
+  mark_dirty(cell.plane);
+  if (!config_.offset_test) return;
+  const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
+  const bool side = !config_.view_side || plane.fit.plane.normal().dot(cell.sums.view.cast<double>()) > 0.0;
+  constexpr double kHysteresis = 1.5;  // so that a cell on the limit does not come and go
+  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side) leave(grid, ref);
+}
+
+// Planes and planes.
+
+bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
+                     double max_angle_rad, double max_offset_m) const {
+  if (expected_squared_distance(fit_a.plane.normal(), fit_a.deviation_rad, fit_b.plane.normal(), fit_b.deviation_rad) >=
+      squared_chord(max_angle_rad)) {
+    return false;
+  }
+  if (!config_.offset_test) return true;
+  // How far the smaller one's evidence lies from the larger one's plane, beyond what it scatters about its own.
+  const bool a_is_smaller = a.weight() < b.weight();
+  const PlaneStatistics& smaller = a_is_smaller ? a : b;
+  const PlaneFit& own = a_is_smaller ? fit_a : fit_b;
+  const PlaneFit& larger = a_is_smaller ? fit_b : fit_a;
+  const double excess_m2 = smaller.mean_square_distance_m2(larger.plane) - own.residual_m2;
+  return excess_m2 < max_offset_m * max_offset_m;
+}
+
+std::vector<PlaneSlot> PlaneMap::touching(const UncertainGrid& grid, const LocalPlane& local) const {
+  std::vector<PlaneSlot> found;
+  PlaneSlot last = kNoSlot;
+  for (const CellRef ref : local.cells) {
+    grid.for_each_neighbour(ref, 1, [&](CellRef other) {
+      const PlaneSlot slot = grid.cell(other).plane;
+      if (slot == kNoSlot || slot == last) return;
+      last = slot;
+      found.push_back(slot);
+    });
+  }
+  sort_unique(found);
+  return found;
+}
+
+PlaneSlot PlaneMap::absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report) {
+  std::vector<PlaneSlot> similar;
+  for (const PlaneSlot slot : touching(grid, local)) {
+    const State& global = state(slot);
+    if (agree(local.statistics, local.fit, global.statistics, global.fit, max_angle_rad_, config_.plane_offset_m)) {
+      similar.push_back(slot);
+    }
+  }
+  if (similar.empty()) return kNoSlot;
+  // The best-supported one decides; others merge with it only if they agree with it themselves.
+  std::stable_sort(similar.begin(), similar.end(), [&](PlaneSlot a, PlaneSlot b) {
+    return state(a).statistics.cell_count() > state(b).statistics.cell_count();
+  });
+  PlaneSlot target = similar.front();
+  for (std::size_t i = 1; i < similar.size(); ++i) {
+    const State& a = state(target);
+    const State& b = state(similar[i]);
+    if (!agree(a.statistics, a.fit, b.statistics, b.fit, max_angle_rad_, config_.plane_offset_m)) continue;
+    target = merge_planes(grid, target, similar[i]);
+    ++report.merged_planes;
+  }
+  return target;
+}
+
+PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) {
+  const PlaneSlot survivor = std::min(a, b);  // the oldest id lives on
+  const PlaneSlot gone = std::max(a, b);
+  State& into = state(survivor);
+  State& from = state(gone);
+  for (const CellRef ref : from.cells) {
+    if (grid.cell(ref).plane != gone) continue;
+    grid.writable(ref).plane = survivor;
+    into.cells.push_back(ref);
+    const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+    coarse_.remove(centre_m, gone);
+    coarse_.add(centre_m, survivor);
+  }
+  into.statistics.add(from.statistics);
+  into.first_seen_utime = std::min(into.first_seen_utime, from.first_seen_utime);
+  into.last_seen_utime = std::max(into.last_seen_utime, from.last_seen_utime);
+  into.merged.push_back(id_of(gone));
+  into.merged.insert(into.merged.end(), from.merged.begin(), from.merged.end());
+  std::sort(into.merged.begin(), into.merged.end());
+  removed_.push_back({id_of(gone), id_of(survivor), 0});
+  states_[gone].reset();
+  refit(survivor);
+  mark_dirty(survivor);
+  return survivor;
+}
+
+void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
+  std::vector<CellRef> free;
+  for (const CellRef ref : local.cells) {
+    if (grid.cell(ref).plane == kNoSlot) free.push_back(ref);
+  }
+  if (static_cast<double>(free.size()) < config_.min_cells) return;
+  const auto slot = static_cast<PlaneSlot>(states_.size());
+  states_.push_back(std::make_unique<State>(grid.geometric_centre_m(local.cells.front())));
+  State& plane = state(slot);
+  plane.fit = local.fit;
+  plane.first_seen_utime = utime;
+  plane.last_seen_utime = utime;
+  for (const CellRef ref : free) join(grid, ref, slot);
+  refit(slot);
+  ++report.new_planes;
+}
+
+void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
+  const PlaneSlot target = absorb_into(grid, local, report);
+  if (target == kNoSlot) {
+    start(grid, local, utime, report);
+    return;
+  }
+  for (const CellRef ref : local.cells) {
+    const Cell& cell = grid.cell(ref);
+    if (cell.plane != kNoSlot) continue;
+    const double distance_m = std::abs(state(target).fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
+    if (config_.offset_test && distance_m > band_m(cell, state(target).fit)) continue;
+    join(grid, ref, target);
+  }
+  refit(target);
+  state(target).last_seen_utime = std::max(state(target).last_seen_utime, utime);
+}
+
+GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> local,
+                             std::span<const CellChange> changes, std::int64_t utime) {
+  GlobalReport report;
+  for (const PlaneSlot slot : dirty_) {
+    if (!states_[slot]) continue;
+    refit(slot);
+    state(slot).last_seen_utime = std::max(state(slot).last_seen_utime, utime);
+  }
+  for (const LocalPlane& plane : local) merge_local(grid, plane, utime, report);
+  if (config_.adoption) adopt(grid, changes);
+  if (config_.bridge_gap_m > 0.0) bridge(grid, report);
+  dissolve_small(grid, report);
+  return report;
+}
+
+// What lifts the paper.
+
+PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const {
+  const Cell& cell = grid.cell(ref);
+  const Eigen::Vector3d centre_m = grid.virtual_centre_m(ref);
+  const double own_cells = cell.plane == kNoSlot ? 0.0 : static_cast<double>(state(cell.plane).statistics.cell_count());
+  PlaneSlot best = kNoSlot;
+  double best_distance_m = std::numeric_limits<double>::infinity();
+  grid.for_each_neighbour(ref, 1, [&](CellRef other) {
+    const PlaneSlot slot = grid.cell(other).plane;
+    if (slot == kNoSlot || slot == cell.plane || slot == best) return;
+    const State& plane = state(slot);
+    const Eigen::Vector3d& normal = plane.fit.plane.normal();
+    if (config_.view_side && normal.dot(cell.sums.view.cast<double>()) <= 0.0) return;
+    const double distance_m = std::abs(plane.fit.plane.signed_distance_m(centre_m));
+    if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) return;
+    if (distance_m > config_.cell_offset_m || cell.plane != kNoSlot) {
+      // A layer of the plane's slab: the plane's own cells lie behind or before it, not beside it.
+      const Eigen::Vector3d step = grid.virtual_centre_m(other) - centre_m;
+      if (std::abs(normal.dot(step)) < 0.5 * step.norm()) return;
+    }
+    if (cell.plane != kNoSlot && static_cast<double>(plane.statistics.cell_count()) < config_.slab_ratio * own_cells) {
+      return;
+    }
+    best = slot;
+    best_distance_m = distance_m;
+  });
+  return best;
+}
+
+void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes) {
+  for (const CellChange& change : changes) {
+    const Cell& cell = grid.cell(change.cell);
+    if (cell.sums.count() <= grid_config_.density_threshold) continue;
+    if (cell.plane != kNoSlot && !(config_.slab_sigmas > 0.0)) continue;
+    const PlaneSlot slot = best_neighbour(grid, change.cell);
+    if (slot == kNoSlot) continue;
+    if (cell.plane != kNoSlot) leave(grid, change.cell);
+    join(grid, change.cell, slot);
+  }
+}
+
+PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const {
+  const State& plane = state(slot);
+  std::vector<std::uint64_t> seen;
+  std::vector<PlaneSlot> near;
+  for (const CellRef ref : plane.cells) {
+    if (grid.cell(ref).plane != slot) continue;
+    const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+    const std::uint64_t key = coarse_.key_of(centre_m);
+    if (!seen.empty() && seen.back() == key) continue;
+    if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
+    seen.push_back(key);
+    coarse_.planes_near(centre_m, 2, near);
+  }
+  sort_unique(near);
+  for (const PlaneSlot other : near) {
+    if (other == slot) continue;
+    const State& partner = state(other);
+    // Two tables of one height are two tables: only pieces that are large against the gap are taken for one surface.
+    if (std::min(plane.fit.extent_m(), partner.fit.extent_m()) < 2.0 * config_.bridge_gap_m) continue;
+    if (agree(plane.statistics, plane.fit, partner.statistics, partner.fit, config_.bridge_angle_deg * kRadPerDeg,
+              0.5 * config_.plane_offset_m)) {
+      return other;
+    }
+  }
+  return kNoSlot;
+}
+
+void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
+  const std::vector<PlaneSlot> candidates = dirty_;
+  for (PlaneSlot slot : candidates) {
+    while (states_[slot]) {
+      State& plane = state(slot);
+      const std::size_t cells = plane.statistics.cell_count();
+      if (static_cast<double>(cells) < 1.1 * static_cast<double>(plane.cells_when_bridged)) break;
+      const PlaneSlot partner = bridge_partner(grid, slot);
+      if (partner == kNoSlot) {
+        plane.cells_when_bridged = cells;
+        break;
+      }
+      slot = merge_planes(grid, slot, partner);
+      ++report.merged_planes;
+    }
+  }
+}
+
+void PlaneMap::dissolve_small(UncertainGrid& grid, GlobalReport& report) {
+  const std::vector<PlaneSlot> candidates = dirty_;
+  for (const PlaneSlot slot : candidates) {
+    if (!states_[slot] || 3 * state(slot).statistics.cell_count() >= static_cast<std::size_t>(config_.min_cells))
+      continue;
+    for (const CellRef ref : state(slot).cells) {
+      if (grid.cell(ref).plane == slot) leave(grid, ref);
+    }
+    removed_.push_back({id_of(slot), kNoPlane, 0});
+    states_[slot].reset();
+    ++report.removed_planes;
+  }
+}
+
+// Records for readers.
+
+PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
+  const State& plane = state(slot);
+  PlaneRecord record;
+  record.id = id_of(slot);
+  record.plane = plane.fit.plane;
+  record.covariance = covariance_of(plane.fit, plane.statistics.weight(), config_.offset_floor_m);
+  record.centroid_m = plane.fit.centroid_m;
+  record.cell_count = static_cast<std::uint32_t>(plane.statistics.cell_count());
+  record.point_count = static_cast<std::uint64_t>(plane.statistics.point_count());
+  record.first_seen_utime = plane.first_seen_utime;
+  record.last_seen_utime = plane.last_seen_utime;
+  record.quality = plane.statistics.core_point_count() / std::max(plane.statistics.point_count(), 1.0);
+  record.revision = revision;
+  record.merged = plane.merged;
+  return record;
+}
+
+bool PlaneMap::update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
+                              std::vector<RemovedPlane>& removed) {
+  if (!changed()) return false;
+  const auto id_less = [](const std::shared_ptr<const PlaneRecord>& r, PlaneId id) { return r->id < id; };
+  for (RemovedPlane gone : removed_) {
+    const auto at = std::lower_bound(records.begin(), records.end(), gone.id, id_less);
+    if (at == records.end() || (*at)->id != gone.id) continue;  // no reader ever saw it
+    records.erase(at);
+    gone.revision = revision;
+    removed.push_back(gone);
+  }
+  sort_unique(dirty_);
+  for (const PlaneSlot slot : dirty_) {
+    if (!states_[slot]) continue;
+    state(slot).dirty = false;
+    auto record = std::make_shared<const PlaneRecord>(record_of(slot, revision));
+    const auto at = std::lower_bound(records.begin(), records.end(), record->id, id_less);
+    if (at != records.end() && (*at)->id == record->id) {
+      *at = std::move(record);
+    } else {
+      records.insert(at, std::move(record));
+    }
+  }
+  dirty_.clear();
+  removed_.clear();
+  return true;
+}
+
+}  // namespace planemap

@@ -1,0 +1,120 @@
+#include "planemap/plane_statistics.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace planemap {
+
+double PlaneFit::extent_m() const {
+  return std::sqrt(12.0 * std::max(spread_2_m2, 0.0));
+}
+
+void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign) {
+  const Eigen::Vector3d shift_m = centre_m - origin_m_;
+  const double n = cell.sums.count();
+  pooled_.add(cell.sums.points, sign * static_cast<double>(cell.plane_weight), shift_m);
+  const Eigen::Vector3d virtual_centre = cell.sums.points.mean();
+  centres_.add(Moments{1.0, virtual_centre, Symmetric3::outer(virtual_centre)}, sign, shift_m);
+  if (cell.has_normal()) {
+    const auto deviation = static_cast<double>(cell.deviation_rad);
+    normal_sum_ += sign * cell.normal.cast<double>();
+    deviation_sum_rad2_ += sign * deviation * deviation;
+    normals_ += sign;
+  }
+  view_ += sign * cell.sums.view.cast<double>();
+  cells_ += sign;
+  points_ += sign * n;
+  if (cell.plane_weight > 0.0F) core_points_ += sign * n;
+}
+
+void PlaneStatistics::add(const PlaneStatistics& other) {
+  const Eigen::Vector3d shift_m = other.origin_m_ - origin_m_;
+  pooled_.add(other.pooled_, 1.0, shift_m);
+  centres_.add(other.centres_, 1.0, shift_m);
+  normal_sum_ += other.normal_sum_;
+  deviation_sum_rad2_ += other.deviation_sum_rad2_;
+  normals_ += other.normals_;
+  view_ += other.view_;
+  cells_ += other.cells_;
+  points_ += other.points_;
+  core_points_ += other.core_points_;
+}
+
+std::optional<PlaneFit> PlaneStatistics::fit(bool pooled) const {
+  return pooled ? fit_pooled() : fit_normals();
+}
+
+double PlaneStatistics::normal_deviation_rad() const {
+  return normals_ > 0.5 ? std::sqrt(std::max(deviation_sum_rad2_, 0.0)) / normals_ : 0.0;  // Eq. 3: S_s / n^2
+}
+
+std::optional<PlaneFit> PlaneStatistics::fit_pooled() const {
+  if (!(pooled_.weight > 0.0)) return std::nullopt;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(pooled_.covariance());
+  const Eigen::Vector3d& spreads = solver.eigenvalues();
+  if (!(spreads(1) > 1e-9)) return std::nullopt;
+  Eigen::Vector3d normal = solver.eigenvectors().col(0).normalized();
+  if (normal.dot(view_) < 0.0) normal = -normal;
+  const Eigen::Vector3d centroid = origin_m_ + pooled_.mean();
+  return PlaneFit{Plane::through(centroid, normal),
+                  centroid,
+                  solver.eigenvectors().col(1),
+                  solver.eigenvectors().col(2),
+                  spreads(1),
+                  spreads(2),
+                  std::max(spreads(0), 0.0),
+                  normal_deviation_rad()};
+}
+
+std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
+  if (normals_ < 0.5 || normal_sum_.norm() < 1e-9) return std::nullopt;
+  const Eigen::Vector3d normal = normal_sum_.normalized();
+  const Eigen::Vector3d centroid = origin_m_ + centres_.mean();
+  const Eigen::Matrix3d scatter = centres_.covariance();
+  const Eigen::Vector3d any = std::abs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
+  Eigen::Vector3d t1 = normal.cross(any).normalized();
+  Eigen::Vector3d t2 = normal.cross(t1);
+  double spread_1 = t1.dot(scatter * t1);
+  double spread_2 = t2.dot(scatter * t2);
+  if (spread_1 > spread_2) {
+    std::swap(t1, t2);
+    std::swap(spread_1, spread_2);
+  }
+  return PlaneFit{Plane::through(centroid, normal),
+                  centroid,
+                  t1,
+                  t2,
+                  spread_1,
+                  spread_2,
+                  normal.dot(scatter * normal),
+                  normal_deviation_rad()};
+}
+
+double squared_chord(double angle_rad) {
+  const double chord = 2.0 * std::sin(0.5 * angle_rad);
+  return chord * chord;
+}
+
+double point_weight(const CellSums& sums, const Eigen::Vector3d& normal) {
+  constexpr double kLeastVariance = 1e-8;  // points without error are taken as good to a tenth of a millimetre
+  return 1.0 / std::max(sums.point_variance(normal), kLeastVariance);
+}
+
+Eigen::Matrix4d covariance_of(const PlaneFit& fit, double weight, double offset_floor_m) {
+  // The normal equations of (tilt_1, tilt_2, offset at the centroid) are diagonal in the principal axes.
+  Eigen::Matrix<double, 4, 3> jacobian;
+  jacobian << fit.tangent_1, fit.tangent_2, Eigen::Vector3d::Zero(),  //
+      -fit.centroid_m.dot(fit.tangent_1), -fit.centroid_m.dot(fit.tangent_2), 1.0;
+  const double floor2 = offset_floor_m * offset_floor_m;
+  const auto tilt_variance = [&](double spread_m2) {
+    const double half_extent2 = 3.0 * spread_m2;  // a uniform strip of half length h has the variance h^2 / 3
+    return 1.0 / (weight * spread_m2) + floor2 / half_extent2;
+  };
+  const Eigen::Vector3d variances(tilt_variance(fit.spread_1_m2), tilt_variance(fit.spread_2_m2),
+                                  1.0 / weight + floor2);
+  return jacobian * variances.asDiagonal() * jacobian.transpose();
+}
+
+}  // namespace planemap

@@ -1,0 +1,82 @@
+#include "planemap/uncertain_grid.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace planemap {
+
+UncertainGrid::UncertainGrid(double cell_size_m) : cell_size_m_(cell_size_m), inverse_cell_size_(1.0 / cell_size_m) {
+  if (!std::isfinite(cell_size_m) || cell_size_m <= 0.0) {
+    throw std::invalid_argument("UncertainGrid: cell_size_m must be finite and > 0");
+  }
+}
+
+CellIndex UncertainGrid::index_of(const Eigen::Vector3d& p_world_m) const {
+  const Eigen::Array3d scaled = p_world_m.array() * inverse_cell_size_;
+  return {static_cast<int>(std::floor(scaled.x())), static_cast<int>(std::floor(scaled.y())),
+          static_cast<int>(std::floor(scaled.z()))};
+}
+
+Eigen::Vector3d UncertainGrid::geometric_centre_m(const CellIndex& index) const {
+  return (index.cast<double>().array() + 0.5) * cell_size_m_;
+}
+
+std::optional<CellRef> UncertainGrid::find(const CellIndex& index) const {
+  const std::uint32_t slot = block_slot(block_of(index));
+  if (slot == kNoBlock) return std::nullopt;
+  const int ordinal = blocks_[slot]->find(place_of(index));
+  if (ordinal < 0) return std::nullopt;
+  return CellRef{slot, static_cast<std::uint32_t>(ordinal)};
+}
+
+CellRef UncertainGrid::find_or_add(const CellIndex& index) {
+  std::uint32_t slot = block_slot(block_of(index));
+  if (slot == kNoBlock) slot = make_block(block_of(index));
+  Block& block = writable_block(slot);
+  const std::size_t before = block.size();
+  const int ordinal = block.find_or_add(place_of(index));
+  cell_count_ += block.size() - before;
+  return {slot, static_cast<std::uint32_t>(ordinal)};
+}
+
+std::uint32_t UncertainGrid::block_slot(const BlockIndex& index) const {
+  const auto found = slots_.find(index);
+  return found == slots_.end() ? kNoBlock : found->second;
+}
+
+std::uint32_t UncertainGrid::make_block(const BlockIndex& index) {
+  const auto slot = static_cast<std::uint32_t>(blocks_.size());
+  slots_.emplace(index, slot);
+  owned_.push_back(std::make_shared<Block>(index));
+  blocks_.push_back(owned_.back());
+  shared_.push_back(false);
+  neighbours_.emplace_back().fill(kNoBlock);
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const std::uint32_t other = block_slot(index + BlockIndex(dx, dy, dz));
+        if (other == kNoBlock) continue;
+        const int towards = (dx + 1) + 3 * (dy + 1) + 9 * (dz + 1);
+        neighbours_[slot][static_cast<std::size_t>(towards)] = other;
+        neighbours_[other][static_cast<std::size_t>(26 - towards)] = slot;
+      }
+    }
+  }
+  return slot;
+}
+
+Block& UncertainGrid::writable_block(std::uint32_t slot) {
+  if (shared_[slot]) {
+    owned_[slot] = std::make_shared<Block>(*owned_[slot]);
+    blocks_[slot] = owned_[slot];
+    shared_[slot] = false;
+  }
+  return *owned_[slot];
+}
+
+const std::vector<std::shared_ptr<const Block>>& UncertainGrid::share() {
+  shared_.assign(shared_.size(), true);
+  return blocks_;
+}
+
+}  // namespace planemap
