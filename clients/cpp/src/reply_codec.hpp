@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <planemap/client/map_types.hpp>
+#include <planemap_lcm/reply_t.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace planemap::client {
+
+/// Decodes a page of a reply. Every count is checked against the message's size before memory is taken for it, and the
+/// page is checked to make sense by itself; the error says what is wrong.
+tl::expected<planemap_lcm::reply_t, std::string> decode_reply(std::span<const std::uint8_t> bytes);
+
+/// Joins the pages of a whole answer, in order of page number.
+Map map_of(const std::vector<planemap_lcm::reply_t>& pages);
+
+Status status_of(const planemap_lcm::status_t& status);
+
+}  // namespace planemap::client
