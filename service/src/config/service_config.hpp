@@ -1,32 +1,63 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <planemap/config.hpp>
 #include <planemap/expected.hpp>
-#include <planemap/scan.hpp>
 #include <string>
 #include <vector>
 
 namespace planemap::service {
 
-// Settings of the service, one struct a module; each is listed in its visit_fields(), as those of core are.
+// Settings of the service, one struct a module; each lists its settings in visit_fields(), as those of core do. The
+// limits in a FieldInfo are those of the value for numbers and those of the length for words and lists; for a list of
+// words there is visit(info, value, choices).
+
+/// LCM carries no longer channel names.
+constexpr double kMaxChannelChars = 63;
 
 /// Names and directions of the map.
 struct MapConfig {
   std::string frame = "world";
-  std::vector<double> gravity;  ///< points down in the world frame; empty: not known
+  std::vector<double> gravity;  ///< unit vector, points down in the world frame; empty: not known
 };
 
+template <MaybeConst<MapConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"frame", "name of the world frame, told to clients", 1, 255}, c.frame);
+  visit(FieldInfo{"gravity", "points down in the world frame, x y z; [] where it is not known (no plane classes then)",
+                  0, 3},
+        c.gravity);
+}
+
 struct LcmConfig {
-  std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  int recv_buf_bytes = 2097152;  ///< added to udpm URLs as recv_buf_size; compared with net.core.rmem_max at start
+  std::string url;               ///< empty: the environment's LCM_DEFAULT_URL, else kDefaultLcmUrl
+  int recv_buf_bytes = 2097152;  ///< added to udpm URLs as recv_buf_size
 };
+
+/// LCM's usual group, not leaving the machine.
+constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
+
+template <MaybeConst<LcmConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"url", "empty: LCM_DEFAULT_URL of the environment, else udpm://239.255.76.67:7667?ttl=0", 0, 1024},
+        c.url);
+  visit(FieldInfo{"recv_buf_bytes", "receive buffer that is asked of the kernel; net.core.rmem_max limits it", 65536,
+                  1e9},
+        c.recv_buf_bytes);
+}
 
 /// A box fixed to the body, metres in the body frame; points inside are the robot's own.
 struct MaskBox {
   std::vector<double> min_m;  ///< x y z
   std::vector<double> max_m;  ///< x y z
 };
+
+template <MaybeConst<MaskBox> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"min_m", "least corner in the body frame, x y z", 3, 3}, c.min_m);
+  visit(FieldInfo{"max_m", "greatest corner in the body frame, x y z", 3, 3}, c.max_m);
+}
 
 /// One sensor.
 struct InputConfig {
@@ -35,45 +66,110 @@ struct InputConfig {
   std::string pose_channel = "POSE";
   std::vector<double> translation_m = {0.0, 0.0, 0.0};       ///< T_body_sensor: origin of the sensor in the body frame
   std::vector<double> rotation_wxyz = {1.0, 0.0, 0.0, 0.0};  ///< T_body_sensor: unit quaternion, sensor to body
-  double min_range_m = 0.0;                                  ///< beside those of the section sensor
+  double min_range_m = 0.0;                                  ///< depth; beside those of the section sensor
   double max_range_m = 1000.0;
   double max_rate_hz = 0.0;  ///< scans beyond this rate are dropped and counted; 0: no limit
   std::vector<MaskBox> body_mask;
 };
 
+template <MaybeConst<InputConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"name", "of the sensor, for logs and counters", 1, 64}, c.name);
+  visit(FieldInfo{"channel", "of its scans: planemap_lcm.depth_scan_t or point_scan_t", 1, kMaxChannelChars},
+        c.channel);
+  visit(FieldInfo{"pose_channel", "of the body's poses: bot_core.pose_t", 1, kMaxChannelChars}, c.pose_channel);
+  visit(FieldInfo{"translation_m", "where the sensor is in the body frame, x y z", 3, 3}, c.translation_m);
+  visit(FieldInfo{"rotation_wxyz",
+                  "unit quaternion, takes the sensor's axes (x right, y down, z forward) to the body's", 4, 4},
+        c.rotation_wxyz);
+  visit(FieldInfo{"min_range_m", "nearer depths are left out, beside sensor.min_range_m", 0.0, 1000.0}, c.min_range_m);
+  visit(FieldInfo{"max_range_m", "farther depths are left out, beside sensor.max_range_m", 0.0, 1000.0}, c.max_range_m);
+  visit(FieldInfo{"max_rate_hz", "scans beyond this rate are dropped and counted; 0: no limit", 0.0, 10000.0},
+        c.max_rate_hz);
+  visit(FieldInfo{"body_mask", "boxes of the body frame whose points are the robot's own", 0, 64}, c.body_mask);
+}
+
 /// How poses are found for scans.
 struct PoseConfig {
-  double buffer_s = 10.0;    ///< history that is kept
-  double max_gap_s = 0.5;    ///< poses farther apart are not interpolated between
-  double max_wait_s = 0.5;   ///< a scan waits so long for the pose after it
-  double exact_s = 0.001;    ///< a pose this near to the scan's utime needs no other
-  double jump_m = 1.0;       ///< a step between two poses above this is a jump: counted and said
+  double buffer_s = 10.0;   ///< history that is kept; a step back by more is a restart of the clock
+  double max_gap_s = 0.5;   ///< poses farther apart are not interpolated between
+  double max_wait_s = 0.5;  ///< a scan waits so long for the pose after it
+  double exact_s = 0.001;   ///< a pose this near to the scan's utime needs no other
+  double jump_m = 1.0;      ///< a step between two poses above this is a jump: counted and said
   double jump_deg = 45.0;
 };
+
+template <MaybeConst<PoseConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"buffer_s", "history of poses that is kept; a step back by more is a restart", 0.1, 600.0},
+        c.buffer_s);
+  visit(FieldInfo{"max_gap_s", "poses farther apart than this are not interpolated between", 0.001, 60.0}, c.max_gap_s);
+  visit(FieldInfo{"max_wait_s", "a scan waits this long for the pose after it", 0.0, 60.0}, c.max_wait_s);
+  visit(FieldInfo{"exact_s", "a pose this near to a scan is its pose", 0.0, 1.0}, c.exact_s);
+  visit(FieldInfo{"jump_m", "a longer step between two poses is a jump: counted and logged", 0.0, 1e6}, c.jump_m);
+  visit(FieldInfo{"jump_deg", "a greater turn between two poses is a jump: counted and logged", 0.0, 180.0},
+        c.jump_deg);
+}
 
 struct QueueConfig {
   int scans = 4;  ///< bound; the oldest is dropped
 };
+
+template <MaybeConst<QueueConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"scans", "scans that wait for the mapper; beyond, the oldest is dropped and counted", 1, 1000},
+        c.scans);
+}
 
 struct PublishConfig {
   std::string status_channel = "PLANEMAP_STATUS";
   std::string delta_channel = "PLANEMAP_DELTA";
   std::string request_channel = "PLANEMAP_REQUEST";
   double status_period_s = 1.0;
-  double delta_period_s = 0.2;    ///< least time between two deltas
+  double delta_period_s = 0.2;  ///< least time between two deltas
   int page_bytes = 60000;
-  double page_pause_s = 0.0005;   ///< between the pages of a reply, so that receivers keep up
-  int kept_replies = 8;           ///< replies kept for lost pages
+  double page_pause_s = 0.0005;  ///< between two pages, so that receivers keep up
+  int kept_replies = 8;          ///< replies kept for lost pages
 };
+
+template <MaybeConst<PublishConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"status_channel", "planemap_lcm.status_t goes out here", 1, kMaxChannelChars}, c.status_channel);
+  visit(FieldInfo{"delta_channel", "planemap_lcm.planes_t goes out here", 1, kMaxChannelChars}, c.delta_channel);
+  visit(FieldInfo{"request_channel", "planemap_lcm.request_t comes in here", 1, kMaxChannelChars}, c.request_channel);
+  visit(FieldInfo{"status_period_s", "time between two status messages", 0.05, 60.0}, c.status_period_s);
+  visit(FieldInfo{"delta_period_s", "least time between two deltas", 0.01, 60.0}, c.delta_period_s);
+  visit(FieldInfo{"page_bytes", "greatest message that is sent", 4096, 60000}, c.page_bytes);
+  visit(FieldInfo{"page_pause_s", "between two pages, so that receivers keep up", 0.0, 1.0}, c.page_pause_s);
+  visit(FieldInfo{"kept_replies", "replies that are kept, so that lost pages can be asked for again", 1, 1000},
+        c.kept_replies);
+}
 
 struct LogConfig {
-  std::string level = "info";   ///< trace, debug, info, warn, error
-  std::string format = "text";  ///< text or json
+  std::string level = "info";
+  std::string format = "text";
 };
 
+template <MaybeConst<LogConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  using Words = std::initializer_list<const char*>;
+  visit(FieldInfo{"level", "least important message that is logged"}, c.level,
+        Words{"trace", "debug", "info", "warn", "error"});
+  visit(FieldInfo{"format", "text for people, json for machines: one object a line"}, c.format, Words{"text", "json"});
+}
+
 struct LimitsConfig {
-  int image_bytes = 67108864;  ///< greatest scan after decompression
+  int image_bytes = 67108864;     ///< greatest scan after decompression
+  int waiting_bytes = 268435456;  ///< all scans that wait for a pose
 };
+
+template <MaybeConst<LimitsConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"image_bytes", "greatest scan after decompression; greater ones are rejected", 1024, 1e9},
+        c.image_bytes);
+  visit(FieldInfo{"waiting_bytes", "memory of scans that wait for a pose; beyond, the oldest is dropped", 1024, 2e9},
+        c.waiting_bytes);
+}
 
 struct ServiceConfig {
   MapperConfig mapper;  ///< sections sensor, grid, normals and planes
@@ -87,6 +183,29 @@ struct ServiceConfig {
   LimitsConfig limits;
 };
 
+/// A section of the file.
+struct SectionInfo {
+  const char* key;
+  const char* help;
+};
+
+/// Calls visit(SectionInfo, struct) for each section in the file's order; inputs is a list of structs.
+template <MaybeConst<ServiceConfig> Config, class Visit>
+void visit_sections(Config& c, Visit&& visit) {
+  visit(SectionInfo{"sensor", "Errors and limits of a Kinect-like depth sensor."}, c.mapper.sensor);
+  visit(SectionInfo{"grid", "The uncertain grid."}, c.mapper.grid);
+  visit(SectionInfo{"normals", "Uncertain normals of cells."}, c.mapper.normals);
+  visit(SectionInfo{"planes", "Local and global planes."}, c.mapper.planes);
+  visit(SectionInfo{"map", "Names and directions of the map."}, c.map);
+  visit(SectionInfo{"lcm", "The bus."}, c.lcm);
+  visit(SectionInfo{"inputs", "Sensors: a list; each has a channel of its own."}, c.inputs);
+  visit(SectionInfo{"pose", "How poses are found for scans."}, c.pose);
+  visit(SectionInfo{"queue", "Scans with a pose, on their way to the mapper."}, c.queue);
+  visit(SectionInfo{"publish", "What goes out over LCM."}, c.publish);
+  visit(SectionInfo{"log", "The log, on standard error."}, c.log);
+  visit(SectionInfo{"limits", "What is taken from the outside at most."}, c.limits);
+}
+
 /// Where the settings come from; later ones win: preset, file, overrides.
 struct ConfigSources {
   std::string preset = "best";         ///< best or paper; --preset
@@ -99,5 +218,9 @@ Expected<ServiceConfig> load_config(const ConfigSources& sources);
 
 /// The configuration as YAML with a comment for each key; load_config reads it back to the same.
 std::string to_yaml(const ServiceConfig& config);
+
+/// The URL that lcm::LCM is to be given: the configured one, else LCM_DEFAULT_URL, else kDefaultLcmUrl; for udpm with
+/// recv_buf_size unless it names one.
+std::string effective_lcm_url(const LcmConfig& config);
 
 }  // namespace planemap::service

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "codec/scan_codec.hpp"
+#include "sync/pose_buffer.hpp"
+
+namespace planemap::service {
+
+/// Decodes bot_core.pose_t (rigid_body.pose_t has the same fingerprint). The quaternion is normalised; one that is no
+/// unit quaternion within 1e-3 is rejected, never mended into a made-up pose.
+Decoded<StampedPose> decode_pose(std::span<const std::uint8_t> message);
+
+}  // namespace planemap::service

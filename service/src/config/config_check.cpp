@@ -1,0 +1,129 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "config/config_reader.hpp"
+
+namespace planemap::service {
+namespace {
+
+/// Quaternions that were written with three digits are taken and normalised; others are slips.
+constexpr double kUnitTolerance = 1e-3;
+
+double norm_of(const std::vector<double>& v) {
+  return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
+}
+
+void scale_to_unit(std::vector<double>& v) {
+  const double norm = norm_of(v);
+  // Reading back what was printed must change nothing, so a vector that is as good as unit stays as it is.
+  if (std::abs(norm - 1.0) <= 1e-12) return;
+  for (double& x : v) x /= norm;
+}
+
+void check_less(const std::string& path, const char* low_key, double low, const char* high_key, double high,
+                ConfigProblems& problems) {
+  if (low < high) return;
+  problems.add(path + "." + low_key, fmt::format("{} must be less than {} ({})", low, high_key, high));
+}
+
+void check_channel_name(const std::string& key, const std::string& name, ConfigProblems& problems) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isgraph(c) != 0; });
+  if (!plain) problems.add(key, "a channel's name must be printable ASCII without spaces");
+}
+
+void check_input(const std::string& path, InputConfig& input, ConfigProblems& problems) {
+  check_channel_name(path + ".channel", input.channel, problems);
+  check_channel_name(path + ".pose_channel", input.pose_channel, problems);
+  check_less(path, "min_range_m", input.min_range_m, "max_range_m", input.max_range_m, problems);
+  const double norm = norm_of(input.rotation_wxyz);
+  if (std::abs(norm - 1.0) > kUnitTolerance) {
+    problems.add(
+        path + ".rotation_wxyz",
+        fmt::format("is no unit quaternion: its length is {:.6g} (allowed: 1 within {})", norm, kUnitTolerance));
+  } else {
+    scale_to_unit(input.rotation_wxyz);
+  }
+  for (std::size_t i = 0; i < input.body_mask.size(); ++i) {
+    const auto& box = input.body_mask[i];
+    const std::string box_path = fmt::format("{}.body_mask.{}", path, i);
+    if (box.min_m.size() != 3 || box.max_m.size() != 3) {
+      problems.add(box_path, "needs min_m and max_m, three numbers each");
+      continue;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box.min_m[axis] < box.max_m[axis]) continue;
+      problems.add(box_path, fmt::format("min_m must be less than max_m along {}", "xyz"[axis]));
+    }
+  }
+}
+
+/// Each channel has one use, but for poses, which several inputs may share.
+void check_channel_uses(const ServiceConfig& config, ConfigProblems& problems) {
+  std::map<std::string, std::string> users;
+  const auto claim = [&](const std::string& key, const std::string& channel, bool shared) {
+    const auto [entry, is_new] = users.emplace(channel, key);
+    const bool both_poses = shared && entry->second.find(".pose_channel") != std::string::npos;
+    if (!is_new && !both_poses) problems.add(key, fmt::format("'{}' is used by {}, too", channel, entry->second));
+  };
+  for (std::size_t i = 0; i < config.inputs.size(); ++i) {
+    claim(fmt::format("inputs.{}.channel", i), config.inputs[i].channel, false);
+  }
+  for (std::size_t i = 0; i < config.inputs.size(); ++i) {
+    claim(fmt::format("inputs.{}.pose_channel", i), config.inputs[i].pose_channel, true);
+  }
+  claim("publish.status_channel", config.publish.status_channel, false);
+  claim("publish.delta_channel", config.publish.delta_channel, false);
+  claim("publish.request_channel", config.publish.request_channel, false);
+}
+
+void check_names(const std::vector<InputConfig>& inputs, ConfigProblems& problems) {
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (inputs[i].name != inputs[j].name) continue;
+      problems.add(fmt::format("inputs.{}.name", i),
+                   fmt::format("'{}' is the name of inputs.{}, too", inputs[i].name, j));
+    }
+  }
+}
+
+void check_gravity(MapConfig& map, ConfigProblems& problems) {
+  if (map.gravity.empty()) return;
+  if (map.gravity.size() != 3) {
+    problems.add("map.gravity", fmt::format("has {} numbers, must have 3, or none", map.gravity.size()));
+  } else if (norm_of(map.gravity) < 1e-6) {
+    problems.add("map.gravity", "is zero; leave it empty where the direction is not known");
+  } else {
+    scale_to_unit(map.gravity);
+  }
+}
+
+}  // namespace
+
+void check_config(ServiceConfig& config, ConfigProblems& problems) {
+  check_less("sensor", "min_range_m", config.mapper.sensor.min_range_m, "max_range_m", config.mapper.sensor.max_range_m,
+             problems);
+  check_gravity(config.map, problems);
+  for (std::size_t i = 0; i < config.inputs.size(); ++i) {
+    check_input(fmt::format("inputs.{}", i), config.inputs[i], problems);
+  }
+  check_names(config.inputs, problems);
+  check_channel_uses(config, problems);
+  if (config.pose.exact_s > config.pose.max_gap_s) {
+    problems.add("pose.exact_s",
+                 fmt::format("{} must be at most max_gap_s ({})", config.pose.exact_s, config.pose.max_gap_s));
+  }
+  if (config.pose.buffer_s < config.pose.max_gap_s + config.pose.max_wait_s) {
+    problems.add("pose.buffer_s", fmt::format("{} must be at least max_gap_s + max_wait_s ({})", config.pose.buffer_s,
+                                              config.pose.max_gap_s + config.pose.max_wait_s));
+  }
+  check_channel_name("publish.status_channel", config.publish.status_channel, problems);
+  check_channel_name("publish.delta_channel", config.publish.delta_channel, problems);
+  check_channel_name("publish.request_channel", config.publish.request_channel, problems);
+}
+
+}  // namespace planemap::service

@@ -1,0 +1,205 @@
+#include "ingest/scan_intake.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <utility>
+
+#include "codec/pose_codec.hpp"
+
+namespace planemap::service {
+namespace {
+
+constexpr double kWarnPeriodS = 5.0;
+constexpr std::size_t kMaxUnknownTypes = 64;
+
+}  // namespace
+
+ScanIntake::ScanIntake(const ServiceConfig& config, Counters& counters, Sink sink, Warn warn)
+    : counters_(counters),
+      sink_(std::move(sink)),
+      warn_(std::move(warn)),
+      max_scan_bytes_(static_cast<std::size_t>(config.limits.image_bytes)),
+      synchronizer_(config),
+      repeats_(kWarnPeriodS) {
+  for (std::size_t i = 0; i < config.inputs.size(); ++i) {
+    const InputConfig& input = config.inputs[i];
+    inputs_.push_back(Input{input, PointFilter(input), RateLimiter(input.max_rate_hz), std::nullopt});
+    scan_channels_.emplace(input.channel, i);
+    pose_channels_.emplace(input.pose_channel, synchronizer_.stream_of(i));
+    InputFacts facts;
+    facts.channel = input.channel;
+    facts.pose_channel = input.pose_channel;
+    facts_.push_back(std::move(facts));
+  }
+}
+
+std::vector<std::string> ScanIntake::channels() const {
+  std::vector<std::string> channels;
+  for (const auto& entry : scan_channels_) channels.push_back(entry.first);
+  for (const auto& entry : pose_channels_) channels.push_back(entry.first);
+  return channels;
+}
+
+bool ScanIntake::on_message(std::string_view channel, std::span<const std::uint8_t> message, double host_s) {
+  if (const auto scan = scan_channels_.find(channel); scan != scan_channels_.end()) {
+    on_scan(scan->second, message, host_s);
+  } else if (const auto pose = pose_channels_.find(channel); pose != pose_channels_.end()) {
+    on_pose(pose->second, pose->first, message, host_s);
+  } else {
+    return false;
+  }
+  tick(host_s);
+  return true;
+}
+
+void ScanIntake::tick(double host_s) {
+  hand_on(synchronizer_.take_ready(host_s), host_s);
+}
+
+void ScanIntake::finish() {
+  hand_on(synchronizer_.finish(), 0.0);
+}
+
+void ScanIntake::on_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s) {
+  counters_.scan_received();
+  auto decoded = decode_scan(message, max_scan_bytes_);
+  if (!decoded) return reject_scan(index, decoded.error(), host_s);
+  {
+    const std::lock_guard lock(facts_mutex_);
+    ++facts_[index].scans;
+    facts_[index].last_scan_host_s = host_s;
+  }
+  if (!is_wanted(index, *decoded)) return;
+  count_filtered(inputs_[index], decoded->scan);
+  synchronizer_.add_scan(index, std::move(decoded->scan), host_s);
+}
+
+bool ScanIntake::is_wanted(std::size_t index, const DecodedScan& decoded) {
+  Input& input = inputs_[index];
+  const std::int64_t utime = utime_of(decoded.scan);
+  const auto before = std::exchange(input.last_scan, std::pair(utime, decoded.seq));
+  if (before && before->first == utime && before->second == decoded.seq) {
+    counters_.scan_dropped("duplicate");
+    return false;
+  }
+  if (before && utime > before->first && decoded.seq > before->second && before->second >= 0) {
+    const std::int64_t lost = std::int64_t{decoded.seq} - before->second - 1;
+    if (lost > 0) counters_.add("scans_lost_before_arrival." + input.config.name, lost);
+  }
+  if (!input.limiter.passes(utime)) {
+    counters_.scan_dropped("rate_limit");
+    return false;
+  }
+  return true;
+}
+
+void ScanIntake::count_filtered(Input& input, Scan& scan) {
+  const FilteredPoints filtered = input.filter.apply(scan);
+  if (filtered.out_of_range > 0)
+    counters_.add("points_out_of_input_range", static_cast<std::int64_t>(filtered.out_of_range));
+  if (filtered.own_body > 0) counters_.add("points_on_own_body", static_cast<std::int64_t>(filtered.own_body));
+}
+
+void ScanIntake::reject_scan(std::size_t index, const Rejection& rejection, double host_s) {
+  const std::string& channel = inputs_[index].config.channel;
+  counters_.scan_rejected(rejection.reason);
+  warn_rejection(channel, rejection, host_s);
+  const std::lock_guard lock(facts_mutex_);
+  facts_[index].last_problem = last_problem_ = fmt::format("{}: {}", channel, rejection.message);
+  facts_[index].last_problem_host_s = host_s;
+}
+
+void ScanIntake::on_pose(std::size_t stream, const std::string& channel, std::span<const std::uint8_t> message,
+                         double host_s) {
+  counters_.add("poses.received");
+  const auto pose = decode_pose(message);
+  if (pose) return note_pose(stream, channel, synchronizer_.add_pose(stream, *pose), host_s);
+  counters_.add("poses.rejected." + pose.error().reason);
+  warn_rejection(channel, pose.error(), host_s);
+  const std::lock_guard lock(facts_mutex_);
+  last_problem_ = fmt::format("{}: {}", channel, pose.error().message);
+  for (std::size_t i = 0; i < facts_.size(); ++i) {
+    if (synchronizer_.stream_of(i) != stream) continue;
+    facts_[i].last_pose_problem = last_problem_;
+    facts_[i].last_pose_problem_host_s = host_s;
+  }
+}
+
+void ScanIntake::note_pose(std::size_t stream, const std::string& channel, PoseInsert result, double host_s) {
+  switch (result) {
+    case PoseInsert::kAppended:
+      break;
+    case PoseInsert::kOutOfOrder:
+      counters_.add("poses.out_of_order");
+      break;
+    case PoseInsert::kDuplicate:
+      counters_.add("poses.duplicate");
+      break;
+    case PoseInsert::kTooOld:
+      counters_.add("poses.too_old");
+      break;
+    case PoseInsert::kJumped:
+      counters_.add("poses.jumps");
+      warn_once_in_a_while("jump " + channel,
+                           fmt::format("the pose on {} jumped; the map goes on, and may hold things twice", channel),
+                           host_s);
+      break;
+    case PoseInsert::kRestarted:
+      counters_.add("poses.restarts");
+      warn_once_in_a_while(
+          "restart " + channel,
+          fmt::format("the clock of {} stepped back: its poses were forgotten, the map goes on", channel), host_s);
+      break;
+  }
+  const std::lock_guard lock(facts_mutex_);
+  for (std::size_t i = 0; i < facts_.size(); ++i) {
+    if (synchronizer_.stream_of(i) != stream) continue;
+    ++facts_[i].poses;
+    facts_[i].last_pose_host_s = host_s;
+  }
+}
+
+void ScanIntake::hand_on(SyncResults results, double host_s) {
+  for (const auto& scan : results.dropped) {
+    counters_.scan_dropped(scan.reason);
+    const std::lock_guard lock(facts_mutex_);
+    facts_[scan.input].last_problem = last_problem_ = scan.message;
+    facts_[scan.input].last_problem_host_s = host_s;
+  }
+  {
+    const std::lock_guard lock(facts_mutex_);
+    for (std::size_t i = 0; i < facts_.size(); ++i)
+      facts_[i].waiting = static_cast<std::int64_t>(synchronizer_.waiting(i));
+  }
+  for (auto& scan : results.ready) sink_(std::move(scan));
+}
+
+void ScanIntake::warn_rejection(const std::string& channel, const Rejection& rejection, double host_s) {
+  if (rejection.reason == "unknown_type") {
+    // A wrong program on the channel sends the same type for hours: said once for each type.
+    const std::string text =
+        fmt::format("channel {}: {}; such messages are counted, not used", channel, rejection.message);
+    if (unknown_types_.size() < kMaxUnknownTypes && unknown_types_.insert(text).second) warn_(text);
+    return;
+  }
+  warn_once_in_a_while(rejection.reason + " " + channel, fmt::format("channel {}: {}", channel, rejection.message),
+                       host_s);
+}
+
+void ScanIntake::warn_once_in_a_while(const std::string& kind, const std::string& text, double host_s) {
+  const int count = repeats_.pass(kind, host_s);
+  if (count == 1) warn_(text);
+  if (count > 1) warn_(fmt::format("{} ({} times since this was said last)", text, count));
+}
+
+std::vector<InputFacts> ScanIntake::facts() const {
+  const std::lock_guard lock(facts_mutex_);
+  return facts_;
+}
+
+std::string ScanIntake::last_problem() const {
+  const std::lock_guard lock(facts_mutex_);
+  return last_problem_;
+}
+
+}  // namespace planemap::service

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <planemap/mapper.hpp>
+#include <planemap/snapshot.hpp>
+#include <thread>
+
+#include "common/counters.hpp"
+#include "config/service_config.hpp"
+#include "mapping/scan_queue.hpp"
+
+namespace planemap::service {
+
+/// How the mapper gets on.
+struct MappingStats {
+  std::int64_t mapped = 0;           ///< scans
+  std::int64_t last_scan_utime = 0;  ///< microseconds; 0: none yet
+  double last_mapped_host_s = 0.0;   ///< the host's steady clock
+  double rate_hz = 0.0;              ///< scans in the last second
+  double scan_ms_p50 = 0.0;          ///< over the last 100 scans
+  double scan_ms_max = 0.0;
+};
+
+/// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
+class MappingService {
+ public:
+  /// @param epoch        names this life of the map, below 2^53
+  /// @param on_snapshot  called on the mapper's thread after each new snapshot; must return at once; may be empty
+  MappingService(const ServiceConfig& config, std::uint64_t epoch, Counters& counters,
+                 std::function<void()> on_snapshot);
+  ~MappingService();
+  MappingService(const MappingService&) = delete;
+  MappingService& operator=(const MappingService&) = delete;
+
+  /// Queues a scan; if the queue is full, its oldest one is dropped and counted. From any thread.
+  void push(RegisteredScan&& scan);
+  /// The newest snapshot, never nullptr; immutable. From any thread.
+  std::shared_ptr<const MapSnapshot> snapshot() const;
+  /// @param now_host_s  the host's steady clock, seconds
+  MappingStats stats(double now_host_s) const;
+  /// Ends the thread after the scan at hand; scans that still wait are dropped and counted. Called by the destructor,
+  /// too.
+  void stop();
+
+ private:
+  void run(const std::stop_token& stop);
+  void map(const RegisteredScan& scan);
+
+  Counters& counters_;
+  std::function<void()> on_snapshot_;
+  ScanQueue queue_;
+  Mapper mapper_;
+
+  mutable std::mutex mutex_;  ///< of what follows; held for copies only
+  std::shared_ptr<const MapSnapshot> snapshot_;
+  MappingStats stats_;
+  std::deque<double> scan_ms_;           ///< of the last 100 scans
+  std::deque<double> mapped_at_host_s_;  ///< of the last second
+
+  std::jthread thread_;  ///< last: ends before what it uses
+};
+
+/// The host's steady clock in seconds.
+double steady_now_s();
+
+}  // namespace planemap::service

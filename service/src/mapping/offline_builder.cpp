@@ -1,0 +1,87 @@
+#include "mapping/offline_builder.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "ingest/scan_intake.hpp"
+
+namespace planemap::service {
+
+class OfflineBuilder::Impl {
+ public:
+  Impl(const ServiceConfig& config, std::uint64_t epoch)
+      : mapper_(config.mapper, epoch),
+        intake_(
+            config, counters_, [this](RegisteredScan&& scan) { map(scan.scan, scan.T_world_sensor); },
+            [](const std::string&) { /* counted, and kept as last_problem(); a library has no log of its own */ }) {}
+
+  bool add_event(std::string_view channel, std::span<const std::uint8_t> message) {
+    return intake_.on_message(channel, message, kHostTimeStandsStillS);
+  }
+
+  ScanReport add_frame(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+    counters_.scan_received();
+    return map(scan, T_world_sensor);
+  }
+
+  void finish() { intake_.finish(); }
+  std::shared_ptr<const MapSnapshot> snapshot() { return mapper_.snapshot(); }
+  CounterValues counters() const { return counters_.values(); }
+  const PointCounts& points() const { return points_; }
+  const StageTimes& times() const { return times_; }
+  std::string last_problem() const { return intake_.last_problem(); }
+
+ private:
+  /// In a recording only the messages' own time counts.
+  static constexpr double kHostTimeStandsStillS = 0.0;
+
+  ScanReport map(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+    timer_.reset();
+    const auto begin = StageTimer::Clock::now();
+    const ScanReport report = mapper_.integrate(scan, T_world_sensor, &timer_);
+    const std::chrono::duration<double, std::milli> ms = StageTimer::Clock::now() - begin;
+    counters_.scan_mapped(report.points);
+    points_ += report.points;
+    times_.scan_ms.push_back(ms.count());
+    for (std::size_t i = 0; i < kStageCount; ++i) times_.stage_ms[i].push_back(timer_.ms()[i]);
+    return report;
+  }
+
+  Counters counters_;
+  Mapper mapper_;
+  StageTimer timer_;
+  StageTimes times_;
+  PointCounts points_;
+  ScanIntake intake_;
+};
+
+OfflineBuilder::OfflineBuilder(const ServiceConfig& config, std::uint64_t epoch)
+    : impl_(std::make_unique<Impl>(config, epoch)) {}
+OfflineBuilder::~OfflineBuilder() = default;
+
+bool OfflineBuilder::add_event(std::string_view channel, std::span<const std::uint8_t> message) {
+  return impl_->add_event(channel, message);
+}
+ScanReport OfflineBuilder::add_frame(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+  return impl_->add_frame(scan, T_world_sensor);
+}
+void OfflineBuilder::finish() {
+  impl_->finish();
+}
+std::shared_ptr<const MapSnapshot> OfflineBuilder::snapshot() {
+  return impl_->snapshot();
+}
+CounterValues OfflineBuilder::counters() const {
+  return impl_->counters();
+}
+const PointCounts& OfflineBuilder::points() const {
+  return impl_->points();
+}
+const StageTimes& OfflineBuilder::times() const {
+  return impl_->times();
+}
+std::string OfflineBuilder::last_problem() const {
+  return impl_->last_problem();
+}
+
+}  // namespace planemap::service

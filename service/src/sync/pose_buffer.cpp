@@ -1,0 +1,97 @@
+#include "sync/pose_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace planemap::service {
+namespace {
+
+/// 10 kHz for 10 s; a flood of poses a microsecond apart must not fill the memory.
+constexpr std::size_t kMaxPoses = 100000;
+
+std::int64_t to_us(double seconds) {
+  return std::llround(seconds * 1e6);
+}
+
+Eigen::Isometry3d to_isometry(const Eigen::Vector3d& p_m, const Eigen::Quaterniond& q) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = q.toRotationMatrix();
+  T.translation() = p_m;
+  return T;
+}
+
+PoseLookup found(const Eigen::Isometry3d& T_world_body) {
+  return {PoseMatch::kFound, T_world_body, 0.0};
+}
+PoseLookup found(const StampedPose& pose) {
+  return found(to_isometry(pose.p_world_m, pose.q_world_body));
+}
+
+Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::int64_t utime) {
+  const double share = static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime);
+  return to_isometry(a.p_world_m + share * (b.p_world_m - a.p_world_m), a.q_world_body.slerp(share, b.q_world_body));
+}
+
+}  // namespace
+
+PoseBuffer::PoseBuffer(const PoseConfig& config)
+    : history_us_(to_us(config.buffer_s)),
+      max_gap_us_(to_us(config.max_gap_s)),
+      exact_us_(to_us(config.exact_s)),
+      jump_m_(config.jump_m),
+      jump_rad_(config.jump_deg * std::numbers::pi / 180.0) {}
+
+PoseInsert PoseBuffer::insert(const StampedPose& pose) {
+  if (!poses_.empty() && pose.utime < poses_.back().utime - history_us_) {
+    poses_.assign(1, pose);
+    return PoseInsert::kRestarted;
+  }
+  if (poses_.empty() || pose.utime > poses_.back().utime) {
+    const bool jumped = !poses_.empty() && is_jump(poses_.back(), pose);
+    poses_.push_back(pose);
+    forget_old();
+    return jumped ? PoseInsert::kJumped : PoseInsert::kAppended;
+  }
+  const auto place = std::lower_bound(poses_.begin(), poses_.end(), pose.utime,
+                                      [](const StampedPose& p, std::int64_t utime) { return p.utime < utime; });
+  if (place->utime == pose.utime) return PoseInsert::kDuplicate;
+  if (poses_.size() >= kMaxPoses && place == poses_.begin()) return PoseInsert::kTooOld;
+  poses_.insert(place, pose);
+  forget_old();
+  return PoseInsert::kOutOfOrder;
+}
+
+void PoseBuffer::forget_old() {
+  while (poses_.size() > kMaxPoses || poses_.front().utime < poses_.back().utime - history_us_) poses_.pop_front();
+}
+
+bool PoseBuffer::is_jump(const StampedPose& a, const StampedPose& b) const {
+  // Over a longer gap a body may well have gone that far.
+  if (b.utime - a.utime > max_gap_us_) return false;
+  return (b.p_world_m - a.p_world_m).norm() > jump_m_ || a.q_world_body.angularDistance(b.q_world_body) > jump_rad_;
+}
+
+PoseLookup PoseBuffer::find(std::int64_t utime) const {
+  if (poses_.empty()) return {PoseMatch::kNoneYet, Eigen::Isometry3d::Identity(), 0.0};
+  const auto after = std::lower_bound(poses_.begin(), poses_.end(), utime,
+                                      [](const StampedPose& p, std::int64_t t) { return p.utime < t; });
+  if (after == poses_.end()) {
+    if (utime - poses_.back().utime <= exact_us_) return found(poses_.back());
+    return {PoseMatch::kNotYet, Eigen::Isometry3d::Identity(), 0.0};
+  }
+  if (after->utime == utime) return found(*after);
+  if (after == poses_.begin()) {
+    if (after->utime - utime <= exact_us_) return found(*after);
+    return {PoseMatch::kBefore, Eigen::Isometry3d::Identity(), 0.0};
+  }
+  const StampedPose& before = *std::prev(after);
+  const bool has_gap = after->utime - before.utime > max_gap_us_;
+  if (!has_gap && !is_jump(before, *after)) return found(interpolate(before, *after, utime));
+  const StampedPose& nearest = utime - before.utime <= after->utime - utime ? before : *after;
+  if (std::abs(nearest.utime - utime) <= exact_us_) return found(nearest);
+  const double gap_s = static_cast<double>(after->utime - before.utime) * 1e-6;
+  return {has_gap ? PoseMatch::kGap : PoseMatch::kJump, Eigen::Isometry3d::Identity(), gap_s};
+}
+
+}  // namespace planemap::service
