@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <planemap/scan.hpp>
+#include <planemap/simulation/kinect_sensor.hpp>
 #include <planemap/simulation/surface.hpp>
 #include <planemap/sources/frame_source.hpp>
 #include <span>
@@ -22,17 +23,6 @@ struct PoseNoiseConfig {
   double correlation_s = 0.0;  ///< time constant of the errors (first-order Gauss-Markov); 0: white
 };
 
-/// Errors of the simulated Kinect: Khoshelham and Elberink, Sensors 12(2), 2012.
-struct DepthNoiseConfig {
-  double scale = 1.0;                   ///< times the random error; 0: exact depth, no quantisation, no lost returns
-  double depth_sigma_per_m = 1.425e-3;  ///< k in sigma_z = k z^2 (1/m)
-  double baseline_m = 0.075;
-  double disparity_step_px = 0.125;  ///< 0: not quantised
-  double grazing_begin_rad = 1.309;  ///< incidence from which returns get lost (75 degrees) ...
-  double grazing_end_rad = 1.484;    ///< ... and beyond which there are none (85 degrees)
-  double border_loss = 0.5;          ///< share of returns lost beside a step in depth
-};
-
 /// A simulated recording.
 struct SimulationConfig {
   std::uint64_t seed = 1;             ///< of the apartment, the tour and the noise
@@ -40,8 +30,6 @@ struct SimulationConfig {
   bool loop = false;                  ///< go round for ever, each time with new noise
   double rate_hz = 30.0;              ///< of the frames' utimes; the first one is at kFirstUtime
   PinholeIntrinsics intrinsics{640, 480, 585.0, 585.0, 320.0, 240.0};
-  double min_range_m = 0.45;  ///< no returns from nearer
-  double max_range_m = 6.0;   ///< no returns from farther
   DepthNoiseConfig depth_noise;
   PoseNoiseConfig pose_noise;
 };

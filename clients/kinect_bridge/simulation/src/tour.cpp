@@ -1,0 +1,233 @@
+#include "tour.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "free_space.hpp"
+
+namespace planemap::simulation {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSampleS = 0.05;
+constexpr double kSpeedMPerS = 0.45;
+constexpr double kTurnRadPerS = 0.75;     // while turning on the spot
+constexpr double kMaxTurnRadPerS = 1.2;   // at any time
+constexpr double kSmoothingS = 0.5;       // standard deviation of the smoothing of the motion
+constexpr double kLeastClearanceM = 0.3;  // of planned paths; smoothing cuts corners by up to 0.1 m
+constexpr double kViewClearanceM = 0.4;   // of the points that are aimed at
+constexpr double kWallDistanceM = 0.65;   // when driving along the walls
+constexpr double kCameraHeightM = 1.15;
+constexpr double kCameraHeightSwayM = 0.1;
+
+double rad(double deg) {
+  return deg * kPi / 180.0;
+}
+
+/// A periodic motion between -1 and 1.
+double wave(double time_s, double period_s) {
+  return std::sin(2.0 * kPi * time_s / period_s);
+}
+
+std::vector<Footprint> obstacles_of(const Apartment& apartment) {
+  std::vector<Footprint> obstacles = apartment.plan.walls;
+  for (const Furniture& item : apartment.furniture) obstacles.push_back(item.footprint);
+  return obstacles;
+}
+
+}  // namespace
+
+/// Puts the tour together, sample by sample.
+class TourPlanner {
+ public:
+  explicit TourPlanner(const Apartment& apartment)
+      : plan_(apartment.plan), free_space_(plan_.outline, obstacles_of(apartment)) {}
+
+  /// One round; empty if a room can't be reached.
+  std::vector<Tour::Sample> drive() {
+    const std::vector<std::size_t> order = rooms_in_order();
+    const Eigen::Vector2d start_m = free_space_.roomiest(plan_.rooms[order.front()].floor);
+    position_m_ = start_m;
+    for (const std::size_t room : order) visit(plan_.rooms[room].floor);
+    go_to(start_m);
+    if (!reachable_) return {};
+    turn_to(raw_.front().yaw_rad);
+    return std::move(raw_);
+  }
+
+  double least_clearance_m(const std::vector<Tour::Sample>& samples) const {
+    double least_m = kLeastClearanceM;
+    for (const Tour::Sample& sample : samples) {
+      least_m = std::min(least_m, free_space_.clearance_m(sample.position_m.head<2>()));
+    }
+    return least_m;
+  }
+
+ private:
+  /// Depth first through the doors, so that the robot does not cross the apartment between two rooms.
+  std::vector<std::size_t> rooms_in_order() const {
+    std::vector<std::size_t> order;
+    std::vector<std::size_t> open = {0};
+    while (!open.empty()) {
+      const std::size_t room = open.back();
+      open.pop_back();
+      if (std::find(order.begin(), order.end(), room) != order.end()) continue;
+      order.push_back(room);
+      for (const Door& door : plan_.doors) {
+        if (door.low_room == room) open.push_back(door.high_room);
+        if (door.high_room == room) open.push_back(door.low_room);
+      }
+    }
+    return order;
+  }
+
+  double time_s() const { return kSampleS * static_cast<double>(raw_.size()); }
+
+  /// Stays or moves on by a sample and turns as far as the robot can towards a direction.
+  void sample(const Eigen::Vector2d& position_m, double wanted_yaw_rad, double pitch_rad) {
+    const double yaw_rad = raw_.empty() ? wanted_yaw_rad : raw_.back().yaw_rad;
+    const double most_rad = kMaxTurnRadPerS * kSampleS;
+    const double step_rad = std::clamp(std::remainder(wanted_yaw_rad - yaw_rad, 2.0 * kPi), -most_rad, most_rad);
+    Tour::Sample next;
+    next.position_m << position_m, kCameraHeightM + kCameraHeightSwayM * wave(time_s(), 23.0);
+    next.yaw_rad = yaw_rad + step_rad;
+    next.pitch_rad = pitch_rad;
+    raw_.push_back(next);
+    position_m_ = position_m;
+  }
+
+  void visit(const Rectangle& room) {
+    go_to(free_space_.roomiest(room));
+    turn_round();
+    // The corners of the room, beginning with the nearest.
+    const Eigen::Vector2d inset_m = Eigen::Vector2d::Constant(kWallDistanceM);
+    const Eigen::Vector2d low_m = room.min_m + inset_m;
+    const Eigen::Vector2d high_m = room.max_m - inset_m;
+    std::array<Eigen::Vector2d, 4> corners_m = {low_m, Eigen::Vector2d(high_m.x(), low_m.y()), high_m,
+                                                Eigen::Vector2d(low_m.x(), high_m.y())};
+    const auto nearest = std::min_element(corners_m.begin(), corners_m.end(), [this](const auto& a, const auto& b) {
+      return (a - position_m_).squaredNorm() < (b - position_m_).squaredNorm();
+    });
+    std::rotate(corners_m.begin(), nearest, corners_m.end());
+    for (const Eigen::Vector2d& corner_m : corners_m) drive_to(corner_m, room);
+    drive_to(corners_m.front(), room);
+  }
+
+  /// Once about itself: up to the ceiling for the first half of each look, down for the other.
+  void turn_round() {
+    const double from_rad = raw_.empty() ? 0.0 : raw_.back().yaw_rad;
+    const auto steps = static_cast<int>(2.0 * kPi / (kTurnRadPerS * kSampleS));
+    for (int i = 0; i <= steps; ++i) {
+      sample(position_m_, from_rad + i * kTurnRadPerS * kSampleS, rad(6.0) + rad(17.0) * wave(time_s(), 4.3));
+    }
+  }
+
+  void turn_to(double yaw_rad) {
+    while (std::abs(std::remainder(raw_.back().yaw_rad - yaw_rad, 2.0 * kPi)) > 1e-9) sample(position_m_, yaw_rad, 0.0);
+  }
+
+  /// Along a path at constant speed, looking as told.
+  template <class Look>
+  void follow(const std::vector<Eigen::Vector2d>& path_m, const Look& look) {
+    if (path_m.empty()) reachable_ = false;
+    const double step_m = kSpeedMPerS * kSampleS;
+    double left_m = step_m;  // until the next sample
+    for (std::size_t i = 1; i < path_m.size(); ++i) {
+      const Eigen::Vector2d leg_m = path_m[i] - path_m[i - 1];
+      const double length_m = leg_m.norm();
+      double done_m = left_m;
+      for (; done_m <= length_m; done_m += step_m)
+        look(Eigen::Vector2d(path_m[i - 1] + done_m / length_m * leg_m), leg_m);
+      left_m = done_m - length_m;
+    }
+  }
+
+  /// Into another room: looks ahead, to the left and to the right.
+  void go_to(const Eigen::Vector2d& goal_m) {
+    if ((goal_m - position_m_).norm() < kSpeedMPerS * kSampleS) return;
+    follow(free_space_.path(position_m_, goal_m, kLeastClearanceM),
+           [this](const Eigen::Vector2d& p_m, const Eigen::Vector2d& leg_m) {
+             sample(p_m, std::atan2(leg_m.y(), leg_m.x()) + rad(40.0) * wave(time_s(), 6.0),
+                    rad(-6.0) + rad(16.0) * wave(time_s(), 5.3));
+           });
+  }
+
+  /// Within a room: looks across it.
+  void drive_to(const Eigen::Vector2d& wish_m, const Rectangle& room) {
+    const auto goal_m = free_space_.nearest_free(wish_m, room, kViewClearanceM);
+    if (!goal_m || (*goal_m - position_m_).norm() < kSpeedMPerS * kSampleS) return;
+    const Eigen::Vector2d centre_m = room.centre_m();
+    follow(free_space_.path(position_m_, *goal_m, kLeastClearanceM),
+           [this, centre_m](const Eigen::Vector2d& p_m, const Eigen::Vector2d&) {
+             const Eigen::Vector2d to_centre_m = centre_m - p_m;
+             sample(p_m, std::atan2(to_centre_m.y(), to_centre_m.x()) + rad(60.0) * wave(time_s(), 7.0),
+                    rad(-8.0) + rad(18.0) * wave(time_s(), 5.3));
+           });
+  }
+
+  const FloorPlan& plan_;
+  FreeSpace free_space_;
+  std::vector<Tour::Sample> raw_;
+  Eigen::Vector2d position_m_ = Eigen::Vector2d::Zero();
+  bool reachable_ = true;
+};
+
+Tour::Tour(const std::vector<Sample>& raw)
+    : samples_(raw.size()),
+      turn_rad_(2.0 * kPi * std::round((raw.back().yaw_rad - raw.front().yaw_rad) / (2.0 * kPi))) {
+  const auto reach = static_cast<int>(3.0 * kSmoothingS / kSampleS);
+  const auto count = static_cast<int>(raw.size());
+  std::vector<double> weights;
+  double weight_sum = 0.0;
+  for (int k = -reach; k <= reach; ++k) {
+    weights.push_back(std::exp(-0.5 * std::pow(k * kSampleS / kSmoothingS, 2)));
+    weight_sum += weights.back();
+  }
+  for (int i = 0; i < count; ++i) {
+    for (int k = -reach; k <= reach; ++k) {
+      const int rounds = i + k < 0 ? -1 : (i + k) / count;  // the neighbours of the ends are in the next round
+      const Sample& neighbour = raw[static_cast<std::size_t>(i + k - rounds * count)];
+      const double weight = weights[static_cast<std::size_t>(k + reach)] / weight_sum;
+      samples_[i].position_m += weight * neighbour.position_m;
+      samples_[i].yaw_rad += weight * (neighbour.yaw_rad + rounds * turn_rad_);
+      samples_[i].pitch_rad += weight * neighbour.pitch_rad;
+    }
+  }
+}
+
+std::optional<Tour> Tour::plan(const Apartment& apartment) {
+  TourPlanner planner(apartment);
+  const std::vector<Sample> raw = planner.drive();
+  if (raw.empty()) return std::nullopt;
+  const Tour tour(raw);
+  if (planner.least_clearance_m(tour.samples_) < 0.5 * kLeastClearanceM) return std::nullopt;
+  return tour;
+}
+
+double Tour::duration_s() const {
+  return kSampleS * static_cast<double>(samples_.size());
+}
+
+Eigen::Isometry3d Tour::T_apartment_sensor(double time_s) const {
+  const double rounds = std::floor(time_s / duration_s());
+  const double at = (time_s - rounds * duration_s()) / kSampleS;
+  const std::size_t first = std::min(static_cast<std::size_t>(at), samples_.size() - 1);
+  const bool last = first + 1 == samples_.size();
+  const Sample& a = samples_[first];
+  const Sample& b = samples_[last ? 0 : first + 1];
+  const double share = at - static_cast<double>(first);
+  const double yaw_rad = a.yaw_rad + share * (b.yaw_rad + (last ? turn_rad_ : 0.0) - a.yaw_rad);
+  const double pitch_rad = a.pitch_rad + share * (b.pitch_rad - a.pitch_rad);
+
+  const Eigen::Vector3d forward(std::cos(yaw_rad) * std::cos(pitch_rad), std::sin(yaw_rad) * std::cos(pitch_rad),
+                                std::sin(pitch_rad));
+  const Eigen::Vector3d right(std::sin(yaw_rad), -std::cos(yaw_rad), 0.0);
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear() << right, forward.cross(right), forward;
+  transform.translation() = a.position_m + share * (b.position_m - a.position_m);
+  return transform;
+}
+
+}  // namespace planemap::simulation

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "apartment.hpp"
+
+namespace planemap::simulation {
+
+/// A robot's round through all rooms of an apartment, ending where it began: in each room it turns once about itself in
+/// the middle, looking up and down, then drives along the walls and looks across the room.
+class Tour {
+ public:
+  /// Empty if a room can't be reached, or only through a gap that is too narrow.
+  static std::optional<Tour> plan(const Apartment& apartment);
+
+  double duration_s() const;
+  /// Where the camera is. Smooth, and periodic in the duration.
+  Eigen::Isometry3d T_apartment_sensor(double time_s) const;
+
+ private:
+  friend class TourPlanner;
+  /// Camera at one instant.
+  struct Sample {
+    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+    double yaw_rad = 0.0;    ///< about z, continuous: not wrapped
+    double pitch_rad = 0.0;  ///< up is positive
+  };
+  /// @param raw  one round, its last yaw equal to its first but for whole turns
+  explicit Tour(const std::vector<Sample>& raw);
+
+  std::vector<Sample> samples_;  // every kSampleS; the last one is one sample before the first of the next round
+  double turn_rad_ = 0.0;        // by which yaw grows in a round: a multiple of 2 pi
+};
+
+}  // namespace planemap::simulation

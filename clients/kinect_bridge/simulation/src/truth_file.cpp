@@ -1,0 +1,64 @@
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <planemap/simulation/truth_file.hpp>
+#include <system_error>
+
+namespace planemap::simulation {
+namespace {
+
+nlohmann::json to_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+nlohmann::json to_json(const Surface& surface) {
+  const double total_m2 = area_m2(surface);
+  Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
+  nlohmann::json polygons = nlohmann::json::array();
+  for (const ConvexPiece& piece_m : surface.pieces_m) {
+    nlohmann::json ring = nlohmann::json::array();
+    for (const Eigen::Vector3d& corner_m : piece_m) ring.push_back(to_json(corner_m));
+    polygons.push_back({{"outer", std::move(ring)}, {"holes", nlohmann::json::array()}});
+    for (std::size_t i = 1; i + 1 < piece_m.size(); ++i) {
+      const ConvexPiece triangle_m = {piece_m[0], piece_m[i], piece_m[i + 1]};
+      centroid_m += area_m2(triangle_m) / total_m2 * (triangle_m[0] + triangle_m[1] + triangle_m[2]) / 3.0;
+    }
+  }
+  return {{"id", surface.id},
+          {"name", surface.name},
+          {"normal", to_json(surface.plane.normal())},
+          {"d", surface.plane.d()},
+          {"covariance", std::vector<double>(16, 0.0)},
+          {"centroid", to_json(centroid_m)},
+          {"area", total_m2},
+          {"polygons", std::move(polygons)},
+          {"cellCount", 0},
+          {"pointCount", 0},
+          {"class", name_of(surface.plane_class)},
+          {"quality", 1.0},
+          {"firstSeenUtime", 0},
+          {"lastSeenUtime", 0}};
+}
+
+}  // namespace
+
+std::string truth_json(std::span<const Surface> surfaces) {
+  nlohmann::json planes = nlohmann::json::array();
+  for (const Surface& surface : surfaces) planes.push_back(to_json(surface));
+  const nlohmann::json document = {{"frame", "world"}, {"epoch", 0}, {"revision", 0}, {"planes", std::move(planes)}};
+  return document.dump(1) + "\n";
+}
+
+Expected<void> write_truth_file(std::span<const Surface> surfaces, const std::filesystem::path& path) {
+  std::filesystem::path partial = path;
+  partial += ".part";
+  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
+  file << truth_json(surfaces);
+  file.close();
+  if (!file) return fail(partial.string() + ": can't be written");
+  std::error_code error;
+  std::filesystem::rename(partial, path, error);
+  if (error) return fail(path.string() + ": can't be written: " + error.message());
+  return {};
+}
+
+}  // namespace planemap::simulation
