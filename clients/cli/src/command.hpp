@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "exit_code.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace planemap::cli {
+
+/// What a subcommand does once the arguments are read.
+using Action = std::function<ExitCode()>;
+
+/// Each adds its subcommand to the program; when it was the one asked for, `action` is set.
+void add_build_command(CLI::App& app, Action& action);
+void add_status_command(CLI::App& app, Action& action);
+void add_snapshot_command(CLI::App& app, Action& action);
+void add_export_command(CLI::App& app, Action& action);
+
+/// Says on stderr what went wrong: "planemap: ...".
+ExitCode complain(ExitCode code, const std::string& message);
+
+}  // namespace planemap::cli

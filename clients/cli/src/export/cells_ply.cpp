@@ -1,0 +1,44 @@
+#include <pcl/io/ply_io.h>
+#include <pcl/point_types.h>
+
+#include <exception>
+
+#include "export/colour.hpp"
+#include "export/formats.hpp"
+
+namespace planemap::cli {
+namespace {
+
+constexpr Colour kWithoutPlane = {150, 150, 150};
+
+pcl::PointXYZRGBNormal point_of(const CellView& cell) {
+  const Colour colour = cell.plane_id == kNoPlane ? kWithoutPlane : colour_of(cell.plane_id, 0.55);
+  pcl::PointXYZRGBNormal point;
+  point.getVector3fMap() = cell.centre_m.cast<float>();
+  point.r = colour.red;
+  point.g = colour.green;
+  point.b = colour.blue;
+  const Eigen::Vector3d normal = cell.normal.value_or(Eigen::Vector3d::Zero());
+  point.getNormalVector3fMap() = normal.cast<float>();
+  point.curvature = 0.0F;
+  return point;
+}
+
+}  // namespace
+
+Expected<void> write_cells_ply(const ExportMap& map, const std::filesystem::path& path) {
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  cloud.reserve(map.cells.size());
+  for (const CellView& cell : map.cells) cloud.push_back(point_of(cell));
+  try {
+    pcl::PLYWriter writer;
+    if (writer.write(path.string(), cloud, /*binary=*/true, /*use_camera=*/false) != 0) {
+      return fail(path.string() + ": PCL could not write it");
+    }
+  } catch (const std::exception& error) {
+    return fail(path.string() + ": " + error.what());
+  }
+  return {};
+}
+
+}  // namespace planemap::cli

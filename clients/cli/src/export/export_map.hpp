@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <planemap/client/map_types.hpp>
+#include <planemap/outline.hpp>
+#include <planemap/plane.hpp>
+#include <planemap/snapshot.hpp>
+#include <string>
+#include <vector>
+
+namespace planemap::cli {
+
+struct ExportPlane {
+  PlaneRecord record;
+  Outline outline;
+  PlaneClass plane_class = PlaneClass::kOther;
+};
+
+/// What exporters and tables are made from, wherever the map is from.
+struct ExportMap {
+  std::string frame;  ///< name of the world frame
+  std::uint64_t epoch = 0;
+  std::uint64_t revision = 0;
+  std::optional<Eigen::Vector3d> gravity;  ///< unit, down in the world frame; empty: not known
+  std::vector<ExportPlane> planes;         ///< by id
+  std::vector<CellView> cells;             ///< dense ones
+};
+
+/// From a snapshot of this process: outlines and classes are worked out here.
+/// @param gravity  points down in the world frame, any length but 0; empty: not known
+ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
+                        const std::optional<Eigen::Vector3d>& gravity);
+
+/// From a service's answers. Which way is down is taken from its floors, tables and ceilings.
+/// @param cells  the answer with the cells, where they were asked for too
+Expected<ExportMap> export_map_of(const client::Map& planes, const client::Map& cells = {});
+
+}  // namespace planemap::cli

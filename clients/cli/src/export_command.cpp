@@ -1,0 +1,55 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <planemap/client/lcm_map_client.hpp>
+#include <vector>
+
+#include "command.hpp"
+#include "daemon_options.hpp"
+#include "export/exporter.hpp"
+
+namespace planemap::cli {
+namespace {
+
+struct ExportOptions {
+  DaemonOptions daemon;
+  std::string from;
+  std::vector<std::string> outputs;
+  bool quiet = false;
+};
+
+ExitCode run(const ExportOptions& options) {
+  if (options.from != "-") {
+    return complain(ExitCode::kWrongUse, options.from + ": only '-', the running daemon, can be exported");
+  }
+  for (const std::string& output : options.outputs) {
+    if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
+  }
+  auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
+  if (!client) return complain(client.error(), options.daemon);
+  const auto planes = (*client)->snapshot(options.daemon.timeout());
+  if (!planes) return complain(planes.error(), options.daemon);
+  const auto cells = (*client)->cells(options.daemon.timeout());
+  if (!cells) return complain(cells.error(), options.daemon);
+  const auto map = export_map_of(*planes, *cells);
+  if (!map) return complain(ExitCode::kFailed, map.error().message);
+  for (const std::string& output : options.outputs) {
+    if (auto written = export_to(*map, output); !written) return complain(ExitCode::kFailed, written.error().message);
+    if (!options.quiet) std::printf("%s\n", output.c_str());
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("export", "Write the daemon's map to files");
+  const auto options = std::make_shared<ExportOptions>();
+  command->add_option("MAP", options->from, "Whose map: - asks the running daemon")->required();
+  command->add_option("OUT", options->outputs, "Files to write, format by extension: " + known_formats())->required();
+  add_daemon_options(*command, options->daemon);
+  command->add_flag("--quiet", options->quiet, "Don't print the names of the files");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace planemap::cli

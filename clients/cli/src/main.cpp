@@ -1,0 +1,49 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "command.hpp"
+
+#ifndef PLANEMAP_VERSION
+#error "PLANEMAP_VERSION is set by the build"
+#endif
+
+namespace planemap::cli {
+namespace {
+
+ExitCode run(int argc, char** argv) {
+  CLI::App app("Builds plane maps from recorded scans, and asks a running planemapd for its map.", "planemap");
+  app.set_version_flag("--version", "planemap " PLANEMAP_VERSION, "Print the version and exit");
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong use, 3 no daemon answered. 'planemap COMMAND --help' tells more.");
+  Action action;
+  add_build_command(app, action);
+  add_status_command(app, action);
+  add_snapshot_command(app, action);
+  add_export_command(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kWrongUse;
+  }
+  return action();
+}
+
+}  // namespace
+
+ExitCode complain(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "planemap: %s\n", message.c_str());
+  return code;
+}
+
+}  // namespace planemap::cli
+
+int main(int argc, char** argv) {
+  using planemap::cli::complain;
+  using planemap::cli::ExitCode;
+  try {
+    return static_cast<int>(planemap::cli::run(argc, argv));
+  } catch (const std::exception& error) {
+    return static_cast<int>(complain(ExitCode::kFailed, error.what()));
+  }
+}
