@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <new>
 #include <utility>
 
 #include "codec/pose_codec.hpp"
@@ -62,6 +63,14 @@ void ScanIntake::finish() {
 
 void ScanIntake::on_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s) {
   counters_.scan_received();
+  try {
+    take_scan(index, message, host_s);
+  } catch (const std::bad_alloc&) {
+    reject_scan(index, Rejection{"no_memory", fmt::format("no memory for a scan of {} bytes", message.size())}, host_s);
+  }
+}
+
+void ScanIntake::take_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s) {
   auto decoded = decode_scan(message, max_scan_bytes_);
   if (!decoded) return reject_scan(index, decoded.error(), host_s);
   {

@@ -57,6 +57,7 @@ class ScanIntake {
   };
 
   void on_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s);
+  void take_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s);
   void on_pose(std::size_t stream, const std::string& channel, std::span<const std::uint8_t> message, double host_s);
   bool is_wanted(std::size_t index, const DecodedScan& decoded);
   void count_filtered(Input& input, Scan& scan);

@@ -11,8 +11,8 @@
 
 namespace planemap::service {
 
-/// Scans on their way to the mapper. Bounded: a full queue lets the oldest go, since the newest says more about where the
-/// robot is. Any number of threads may use it.
+/// Scans on their way to the mapper. Bounded: a full queue lets the oldest go, since the newest says more about where
+/// the robot is. Any number of threads may use it.
 class ScanQueue {
  public:
   /// @param capacity  > 0

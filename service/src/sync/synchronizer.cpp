@@ -93,8 +93,9 @@ void Synchronizer::add_scan(std::size_t index, Scan scan, double host_s) {
   const auto history_us = static_cast<std::int64_t>(config_.buffer_s * 1e6);
   const bool restarted = waiting.utime < input.newest_utime - history_us;
   input.newest_utime = restarted ? waiting.utime : std::max(input.newest_utime, waiting.utime);
-  waiting_bytes_ += waiting.bytes;
+  const std::size_t bytes = waiting.bytes;
   input.waiting.push_back(std::move(waiting));
+  waiting_bytes_ += bytes;
   while (input.waiting.size() > kMaxWaitingScans || (waiting_bytes_ > max_waiting_bytes_ && input.waiting.size() > 1)) {
     drop_front(index, "waiting_full",
                fmt::format("{} scans of {} bytes wait for a pose on {}", input.waiting.size(), waiting_bytes_,

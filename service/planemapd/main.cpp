@@ -1,0 +1,142 @@
+// The daemon: scans and poses in over LCM, a plane map out.
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "common/version.hpp"
+#include "config/service_config.hpp"
+#include "ingest/kernel_drops.hpp"
+#include "logging.hpp"
+#include "service.hpp"
+
+namespace planemap::service {
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUse = 2;
+
+struct Arguments {
+  ConfigSources sources;
+  std::string lcm_url;
+  bool print_config = false;
+};
+
+void define_options(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version", std::string("planemapd ") + version());
+  app.add_option("-c,--config", arguments.sources.file, "settings in YAML; --print-config shows all of them")
+      ->type_name("FILE");
+  app.add_option("--preset", arguments.sources.preset,
+                 "method to begin with: best, or paper for the paper's reading alone")
+      ->type_name("best|paper")
+      ->capture_default_str();
+  app.add_option("--set", arguments.sources.overrides, "one setting, wins over the file; may be given more than once")
+      ->type_name("SECTION.KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("-l,--lcm-url", arguments.lcm_url, "bus; else lcm.url, else LCM_DEFAULT_URL of the environment")
+      ->type_name("URL");
+  app.add_flag("--print-config", arguments.print_config, "print the settings that would be used, and end");
+  app.footer(
+      "Exit codes: 0 ended by SIGTERM or SIGINT, 1 failed, 2 wrong use or configuration.\n"
+      "Example: planemapd --set grid.cell_size_m=0.05 --set inputs.0.channel=KINECT");
+}
+
+/// Microseconds since 1970, so a later life of the map has a greater epoch; below 2^53 for two centuries more.
+std::uint64_t new_epoch() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
+std::string text_of(const char* path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void log_start(const ServiceConfig& config, const std::string& url, std::uint64_t epoch) {
+  spdlog::info("planemapd {}, epoch {}, bus {}", version(), epoch, url);
+  for (const auto& input : config.inputs) {
+    spdlog::info("input {}: scans on {}, poses on {}", input.name, input.channel, input.pose_channel);
+  }
+  const std::string advice = receive_buffer_advice(url, text_of("/proc/sys/net/core/rmem_max"));
+  if (!advice.empty()) spdlog::warn("{}", advice);
+  spdlog::debug("configuration:\n{}", to_yaml(config));
+}
+
+/// Runs until SIGTERM or SIGINT. The signals are blocked in every thread and waited for here, so no handler ever runs.
+int serve(const ServiceConfig& config) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log may go away; the daemon stays
+
+  const std::string url = effective_lcm_url(config.lcm);
+  const std::uint64_t epoch = new_epoch();
+  log_start(config, url, epoch);
+  const auto bus = open_bus(url);
+  if (!bus) {
+    spdlog::error("{}", bus.error().message);
+    return kFailed;
+  }
+  Service service(config, **bus, epoch);
+  std::jthread bus_thread([&service](const std::stop_token& stop) { service.run(stop); });
+  int signal = 0;
+  sigwait(&signals, &signal);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the process at once
+  spdlog::info("{}: ending", signal == SIGINT ? "SIGINT" : "SIGTERM");
+  bus_thread.request_stop();
+  bus_thread.join();
+  service.stop();
+  const auto snapshot = service.snapshot();
+  spdlog::info("ended with {} planes, {} cells, revision {}", snapshot->planes().size(), snapshot->cell_count(),
+               snapshot->revision());
+  return kDone;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("planemapd: makes a map of planes from depth scans and poses that come in over LCM", "planemapd");
+  Arguments arguments;
+  define_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kWrongUse;
+  }
+  auto config = load_config(arguments.sources);
+  if (!config) {
+    std::fprintf(stderr, "planemapd: the configuration cannot be used:\n%s\n", config.error().message.c_str());
+    return kWrongUse;
+  }
+  if (!arguments.lcm_url.empty()) config->lcm.url = arguments.lcm_url;
+  if (arguments.print_config) {
+    std::fputs(to_yaml(*config).c_str(), stdout);
+    return kDone;
+  }
+  set_up_logging(config->log);
+  return serve(*config);
+}
+
+}  // namespace
+}  // namespace planemap::service
+
+int main(int argc, char** argv) {
+  try {
+    return planemap::service::run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "planemapd: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,66 @@
+#include "codec/request_codec.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <planemap_lcm/request_t.hpp>
+
+#include "codec/wire_reader.hpp"
+#include "config/service_config.hpp"
+
+namespace planemap::service {
+namespace {
+
+constexpr std::string_view kReplyPrefix = "PLANEMAP_REPLY";
+
+tl::unexpected<Rejection> reject(const char* reason, std::string message) {
+  return tl::make_unexpected(Rejection{reason, std::move(message)});
+}
+
+/// LCM's string: a length that counts the zero at the end, then the characters.
+Decoded<std::string> read_reply_channel(WireReader& reader) {
+  const std::int32_t size = reader.i32();
+  if (!reader.ok()) return reject("truncated", "request_t: ends before reply_channel");
+  const auto most = static_cast<std::int32_t>(kMaxChannelChars) + 1;
+  if (size < 1 || size > most) {
+    return reject("reply_channel",
+                  fmt::format("request_t: reply_channel has a length of {} (allowed: 1 to {})", size, most));
+  }
+  const auto bytes = reader.bytes(static_cast<std::size_t>(size));
+  if (!reader.ok() || bytes.back() != 0) return reject("truncated", "request_t: reply_channel does not end");
+  std::string channel(bytes.begin(), bytes.end() - 1);
+  const bool plain = std::all_of(channel.begin(), channel.end(), [](unsigned char c) { return std::isgraph(c) != 0; });
+  if (!plain || channel.rfind(kReplyPrefix, 0) != 0) {
+    return reject("reply_channel",
+                  fmt::format("request_t: reply_channel must begin with {} and be printable", kReplyPrefix));
+  }
+  return channel;
+}
+
+}  // namespace
+
+Decoded<Request> decode_request(std::span<const std::uint8_t> message) {
+  WireReader reader(message);
+  if (reader.i64() != planemap_lcm::request_t::getHash() || !reader.ok()) {
+    return reject(
+        "unknown_type",
+        fmt::format("fingerprint {} is not planemap_lcm.request_t ({})", fingerprint_text(fingerprint_of(message)),
+                    fingerprint_text(static_cast<std::uint64_t>(planemap_lcm::request_t::getHash()))));
+  }
+  reader.i64();  // utime: the client's clock says nothing here
+  Request request;
+  request.request_id = reader.i64();
+  auto channel = read_reply_channel(reader);
+  if (!channel) return tl::make_unexpected(channel.error());
+  request.reply_channel = std::move(*channel);
+  request.operation = reader.i16();
+  request.epoch = reader.i64();
+  request.revision = reader.i64();
+  request.page = reader.i32();
+  if (!reader.ok()) return reject("truncated", fmt::format("request_t: ends early, at byte {}", message.size()));
+  if (reader.remaining() != 0) return reject("size", fmt::format("request_t: {} bytes too many", reader.remaining()));
+  return request;
+}
+
+}  // namespace planemap::service

@@ -1,0 +1,159 @@
+#include "serve/lcm/lcm_server.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace planemap::service {
+namespace {
+
+constexpr std::size_t kMaxRequests = 64;  // that wait for an answer
+constexpr std::size_t kMaxJobs = 16;      // answers that wait for their turn on the bus
+constexpr double kLogPeriodS = 1.0;
+constexpr double kWarnPeriodS = 5.0;
+
+std::int64_t utime_now() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+LcmServer::LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingService& mapping, StatusBoard board,
+                     Counters& counters)
+    : config_(config.publish),
+      bus_(bus),
+      mapping_(mapping),
+      board_(std::move(board)),
+      counters_(counters),
+      book_(config.map),
+      deltas_(config, book_),
+      answerer_(config, book_),
+      outbox_(config.publish.page_pause_s),
+      publish_repeats_(kWarnPeriodS),
+      request_repeats_(kWarnPeriodS),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+LcmServer::~LcmServer() {
+  stop();
+}
+
+void LcmServer::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LcmServer::on_request(std::span<const std::uint8_t> message) {
+  counters_.add("requests.received");
+  auto request = decode_request(message);
+  if (!request) return reject(request.error().reason, request.error().message);
+  {
+    const std::lock_guard lock(mutex_);
+    if (requests_.size() >= kMaxRequests) {
+      counters_.add("requests.dropped.queue_full");
+      return;
+    }
+    requests_.push_back(std::move(*request));
+    is_woken_ = true;
+  }
+  woken_.notify_one();
+}
+
+void LcmServer::reject(const std::string& reason, const std::string& message) {
+  counters_.add("requests.rejected." + reason);
+  const int count = request_repeats_.pass(reason, steady_now_s());
+  if (count > 0) spdlog::warn("channel {}: {} ({} since this was said last)", config_.request_channel, message, count);
+}
+
+void LcmServer::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_woken_ = true;
+  }
+  woken_.notify_one();
+}
+
+void LcmServer::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    try {
+      take_requests();
+      publish_due(steady_now_s());
+    } catch (const std::exception& e) {
+      // What could not be answered is gone; the service goes on.
+      counters_.add("publish.errors");
+      spdlog::error("publishing failed: {}", e.what());
+    }
+    const double wait_s = std::max(0.0, next_due_s() - steady_now_s());
+    std::unique_lock lock(mutex_);
+    woken_.wait_for(lock, stop, std::chrono::duration<double>(wait_s), [this] { return is_woken_; });
+    is_woken_ = false;
+  }
+}
+
+bool LcmServer::has_delta() const {
+  const auto snapshot = mapping_.snapshot();
+  return snapshot->epoch() != told_epoch_ || snapshot->revision() != told_revision_;
+}
+
+double LcmServer::next_due_s() const {
+  double due_s = std::min(status_due_s_, log_due_s_);
+  if (has_delta() && outbox_.jobs() < kMaxJobs) due_s = std::min(due_s, delta_due_s_);
+  if (!outbox_.empty()) due_s = std::min(due_s, outbox_.due_s());
+  return due_s;
+}
+
+void LcmServer::take_requests() {
+  while (outbox_.jobs() < kMaxJobs) {
+    Request request;
+    {
+      const std::lock_guard lock(mutex_);
+      if (requests_.empty()) return;
+      request = std::move(requests_.front());
+      requests_.pop_front();
+    }
+    auto reply = answerer_.answer(
+        request, mapping_.snapshot(), [this] { return board_.status(steady_now_s(), utime_now()); }, utime_now());
+    counters_.add(reply.error.empty() ? "requests.answered" : "requests.answered_with_error");
+    if (!reply.error.empty())
+      spdlog::debug("request {} on {}: {}", request.request_id, request.reply_channel, reply.error);
+    outbox_.add(std::move(reply));
+  }
+}
+
+void LcmServer::publish_due(double now_s) {
+  if (now_s >= status_due_s_) {
+    status_due_s_ = now_s + config_.status_period_s;
+    publish(config_.status_channel, encode(board_.status(now_s, utime_now())));
+  }
+  if (now_s >= log_due_s_) {
+    log_due_s_ = now_s + kLogPeriodS;
+    board_.log(now_s);
+  }
+  if (now_s >= delta_due_s_ && outbox_.jobs() < kMaxJobs && has_delta()) {
+    delta_due_s_ = now_s + config_.delta_period_s;
+    const auto snapshot = mapping_.snapshot();
+    told_epoch_ = snapshot->epoch();
+    told_revision_ = snapshot->revision();
+    outbox_.add(config_.delta_channel, deltas_.make(snapshot));
+  }
+  if (!outbox_.empty() && now_s >= outbox_.due_s()) {
+    const auto message = outbox_.take(now_s, utime_now());
+    publish(message.channel, message.bytes);
+  }
+}
+
+void LcmServer::publish(const std::string& channel, const Page& bytes) {
+  if (bus_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) == 0) return;
+  counters_.add("publish.failed");
+  const int count = publish_repeats_.pass(channel, steady_now_s());
+  if (count > 0) {
+    spdlog::warn(
+        "{} bytes could not be sent on {} ({} times since this was said last); is there a route for multicast?",
+        bytes.size(), channel, count);
+  }
+}
+
+}  // namespace planemap::service

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <planemap/snapshot.hpp>
+#include <planemap_lcm/status_t.hpp>
+#include <string>
+
+#include "codec/page_codec.hpp"
+#include "codec/request_codec.hpp"
+#include "serve/plane_book.hpp"
+
+namespace planemap::service {
+
+/// What goes out in answer to a request: the pages from `begin` to before `end`, stamped for it.
+struct Reply {
+  std::string channel;
+  std::int64_t request_id = 0;
+  std::shared_ptr<const Pages> pages;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::string error;  ///< why it is an error reply; empty: it is none
+};
+
+/// Answers requests from a snapshot; keeps the last replies, so that lost pages can be asked for again. Not
+/// thread-safe.
+class RequestAnswerer {
+ public:
+  RequestAnswerer(const ServiceConfig& config, PlaneBook& book);
+
+  /// @param snapshot  the newest
+  /// @param status    makes the service's status; called only if it is asked for
+  /// @param utime     the service's clock
+  Reply answer(const Request& request, const std::shared_ptr<const MapSnapshot>& snapshot,
+               const std::function<planemap_lcm::status_t()>& status, std::int64_t utime);
+
+ private:
+  /// A reply is found again by the channel that it went to, so that two clients who asked at different times never get
+  /// pages of each other's reply.
+  struct Kept {
+    std::string channel;
+    std::int16_t operation = 0;
+    std::int64_t epoch = 0;
+    std::int64_t revision = 0;
+    std::shared_ptr<const MapSnapshot> snapshot;
+    std::shared_ptr<const Pages> pages;
+  };
+
+  Reply lost_page(const Request& request, const planemap_lcm::reply_t& header) const;
+  Reply error(const Request& request, planemap_lcm::reply_t header, std::int8_t code, std::string message) const;
+  std::shared_ptr<const Pages> pages_of(const Request& request, const planemap_lcm::reply_t& header,
+                                        const std::shared_ptr<const MapSnapshot>& snapshot);
+  void keep(const Request& request, const std::shared_ptr<const MapSnapshot>& snapshot,
+            std::shared_ptr<const Pages> pages);
+
+  PlaneBook& book_;
+  std::string frame_;
+  std::size_t page_bytes_;
+  std::size_t kept_replies_;
+  std::deque<Kept> kept_;  ///< the newest in front
+};
+
+}  // namespace planemap::service

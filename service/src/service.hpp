@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <planemap/expected.hpp>
+#include <planemap/snapshot.hpp>
+#include <stop_token>
+#include <string>
+
+#include "common/counters.hpp"
+#include "config/service_config.hpp"
+#include "ingest/scan_intake.hpp"
+#include "mapping/mapping_service.hpp"
+#include "serve/lcm/lcm_server.hpp"
+
+namespace planemap::service {
+
+/// The whole service on one bus: LCM thread -> intake -> queue -> mapper thread -> snapshot -> publishing thread.
+class Service {
+ public:
+  /// Subscribes and starts. The bus is handed in, so tests pass "memq://"; it must outlive the service, and nobody may
+  /// handle it any more once the service is gone: its subscriptions stay, as LCM cannot end them safely.
+  /// @param epoch  names this life of the map, below 2^53
+  Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// Handles what the bus brings until the stop is requested; on the calling thread.
+  void run(const std::stop_token& stop);
+  /// One step of run(): at most one message.
+  /// @return as lcm::LCM::handleTimeout: > 0 a message was handled, 0 none came in time, < 0 the bus failed
+  int handle(int timeout_ms);
+  /// Ends the threads. The destructor does it, too.
+  void stop();
+
+  std::shared_ptr<const MapSnapshot> snapshot() const { return mapping_.snapshot(); }
+  CounterValues counters() const { return counters_.values(); }
+
+ private:
+  void subscribe(const std::string& channel);
+  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+
+  std::string request_channel_;
+  lcm::LCM& bus_;
+  Counters counters_;
+  MappingService mapping_;
+  ScanIntake intake_;
+  LcmServer server_;
+};
+
+/// Opens a bus, or says what is missing and how to mend it.
+Expected<std::unique_ptr<lcm::LCM>> open_bus(const std::string& url);
+
+}  // namespace planemap::service

@@ -1,0 +1,88 @@
+#include "mapping/offline_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "wire_messages.hpp"
+
+namespace planemap::service {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000;
+
+TEST(OfflineBuilder, MapsALogLikeTheDaemon) {
+  OfflineBuilder builder(ServiceConfig{}, 5);
+  for (int i = 0; i < 10; ++i) {
+    const std::int64_t utime = kSecond + i * 66667;
+    EXPECT_TRUE(builder.add_event("POSE", encoded(pose_message(utime - 10000))));
+    EXPECT_TRUE(builder.add_event("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, i)))));
+    EXPECT_FALSE(builder.add_event("ROBOT_STATUS", encoded(pose_message(utime))));
+  }
+  auto counters = builder.counters();
+  EXPECT_EQ(counters.at("scans.mapped"), 9);  // the last one waits for the pose after it
+  EXPECT_EQ(counters.at("scans.waiting"), 1);
+  builder.finish();
+  counters = builder.counters();
+  EXPECT_EQ(counters.at("scans.received"), 10);
+  EXPECT_EQ(counters.at("scans.dropped.no_pose"), 1);
+  EXPECT_EQ(counters.at("scans.waiting"), 0);
+  EXPECT_FALSE(builder.last_problem().empty());
+  const auto snapshot = builder.snapshot();
+  EXPECT_EQ(snapshot->epoch(), 5u);
+  ASSERT_EQ(snapshot->planes().size(), 1u);
+  EXPECT_EQ(builder.points().total, 9u * 4800u);
+  EXPECT_EQ(builder.points().mapped, 9u * 4800u);
+  EXPECT_EQ(builder.times().scan_ms.size(), 9u);
+  for (const auto& stage : builder.times().stage_ms) EXPECT_EQ(stage.size(), 9u);
+}
+
+TEST(OfflineBuilder, NoScanIsDroppedForWantOfTime) {
+  ServiceConfig config;
+  config.queue.scans = 1;
+  OfflineBuilder builder(config, 5);
+  for (int i = 0; i < 40; ++i) builder.add_event("PLANEMAP_SCAN", encoded(wall_message(kSecond + i * 10000, i)));
+  for (int i = 0; i < 45; ++i) builder.add_event("POSE", encoded(pose_message(kSecond + i * 10000)));
+  builder.finish();
+  EXPECT_EQ(builder.counters().at("scans.mapped"), 40);
+}
+
+TEST(OfflineBuilder, MapsFramesAtTheirPoses) {
+  OfflineBuilder builder(ServiceConfig{}, 5);
+  DepthScan scan;
+  scan.utime = kSecond;
+  scan.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
+  scan.depth.assign(80 * 60, 2000);
+  scan.depth[0] = kNoReturn;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  T_world_sensor.translation().z() = 10.0;
+  const ScanReport report = builder.add_frame(scan, T_world_sensor);
+  EXPECT_EQ(report.points.no_return, 1u);
+  EXPECT_EQ(report.new_planes, 1u);
+  const auto snapshot = builder.snapshot();
+  ASSERT_EQ(snapshot->planes().size(), 1u);
+  EXPECT_NEAR(snapshot->planes()[0]->plane.signed_distance_m({0.0, 0.0, 12.0}), 0.0, 1e-3);
+  EXPECT_EQ(builder.counters().at("scans.mapped"), 1);
+}
+
+TEST(OfflineBuilder, TheSameCallsGiveTheSameMap) {
+  const auto build = [] {
+    auto builder = std::make_unique<OfflineBuilder>(ServiceConfig{}, 5);
+    for (int i = 0; i < 5; ++i) {
+      const std::int64_t utime = kSecond + i * 66667;
+      builder->add_event("POSE", encoded(pose_message(utime, 0.013 * i)));
+      builder->add_event("PLANEMAP_SCAN", encoded(wall_message(utime, i, static_cast<std::uint16_t>(2000 + i))));
+    }
+    builder->finish();
+    return builder->snapshot();
+  };
+  const auto first = build();
+  const auto second = build();
+  ASSERT_EQ(first->planes().size(), second->planes().size());
+  ASSERT_GT(first->planes().size(), 0u);
+  for (std::size_t i = 0; i < first->planes().size(); ++i) {
+    EXPECT_EQ(first->planes()[i]->plane.d(), second->planes()[i]->plane.d());
+    EXPECT_EQ(first->planes()[i]->covariance, second->planes()[i]->covariance);
+  }
+}
+
+}  // namespace
+}  // namespace planemap::service

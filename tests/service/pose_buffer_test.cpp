@@ -1,0 +1,116 @@
+#include "sync/pose_buffer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace planemap::service {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000;
+
+StampedPose pose_at(std::int64_t utime, double x_m, double yaw_rad = 0.0) {
+  return {utime, {x_m, 0.0, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))};
+}
+
+TEST(PoseBuffer, InterpolatesPositionAndRotation) {
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(10 * kSecond, 1.0, 0.0));
+  poses.insert(pose_at(10 * kSecond + 400000, 1.8, 0.4));
+  const auto pose = poses.find(10 * kSecond + 100000);  // a quarter of the way
+  ASSERT_EQ(pose.match, PoseMatch::kFound);
+  EXPECT_NEAR(pose.T_world_body.translation().x(), 1.2, 1e-12);
+  const Eigen::AngleAxisd turn(pose.T_world_body.rotation());
+  EXPECT_NEAR(turn.angle(), 0.1, 1e-12);
+}
+
+TEST(PoseBuffer, TakesTheShortWayBetweenOppositeQuaternions) {
+  PoseBuffer poses{PoseConfig{}};
+  auto a = pose_at(kSecond, 0.0, 0.0);
+  auto b = pose_at(kSecond + 200000, 0.0, 0.2);
+  b.q_world_body.coeffs() *= -1.0;  // the same rotation
+  poses.insert(a);
+  EXPECT_EQ(poses.insert(b), PoseInsert::kAppended);  // and no jump
+  const Eigen::AngleAxisd turn(poses.find(kSecond + 100000).T_world_body.rotation());
+  EXPECT_NEAR(turn.angle(), 0.1, 1e-12);
+}
+
+TEST(PoseBuffer, SaysWhyThereIsNoPose) {
+  PoseBuffer poses{PoseConfig{}};
+  EXPECT_EQ(poses.find(kSecond).match, PoseMatch::kNoneYet);
+  poses.insert(pose_at(10 * kSecond, 0.0));
+  EXPECT_EQ(poses.find(10 * kSecond - 1001).match, PoseMatch::kBefore);
+  EXPECT_EQ(poses.find(10 * kSecond + 1001).match, PoseMatch::kNotYet);
+  poses.insert(pose_at(10 * kSecond + 500001, 0.0));
+  const auto gap = poses.find(10 * kSecond + 250000);
+  EXPECT_EQ(gap.match, PoseMatch::kGap);
+  EXPECT_NEAR(gap.gap_s, 0.500001, 1e-12);
+}
+
+TEST(PoseBuffer, PoseWithinAMillisecondNeedsNoOther) {
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(10 * kSecond, 3.0));
+  for (const std::int64_t offset_us : {-1000, -1, 0, 1, 1000}) {
+    const auto pose = poses.find(10 * kSecond + offset_us);
+    ASSERT_EQ(pose.match, PoseMatch::kFound) << offset_us;
+    EXPECT_EQ(pose.T_world_body.translation().x(), 3.0);
+  }
+  poses.insert(pose_at(12 * kSecond, 5.0));  // beyond the gap: near the ends of it the poses still count
+  EXPECT_EQ(poses.find(10 * kSecond + 900).T_world_body.translation().x(), 3.0);
+  EXPECT_EQ(poses.find(12 * kSecond - 900).T_world_body.translation().x(), 5.0);
+  EXPECT_EQ(poses.find(11 * kSecond).match, PoseMatch::kGap);
+}
+
+TEST(PoseBuffer, SortsWhatComesOutOfOrder) {
+  PoseBuffer poses{PoseConfig{}};
+  EXPECT_EQ(poses.insert(pose_at(1000000, 1.0)), PoseInsert::kAppended);
+  EXPECT_EQ(poses.insert(pose_at(1200000, 1.2)), PoseInsert::kAppended);
+  EXPECT_EQ(poses.insert(pose_at(1100000, 0.5)), PoseInsert::kOutOfOrder);
+  EXPECT_EQ(poses.insert(pose_at(900000, 0.9)), PoseInsert::kOutOfOrder);
+  EXPECT_EQ(poses.insert(pose_at(1100000, 9.9)), PoseInsert::kDuplicate);
+  EXPECT_EQ(poses.size(), 4u);
+  EXPECT_EQ(poses.oldest_utime(), 900000);
+  EXPECT_NEAR(poses.find(1050000).T_world_body.translation().x(), 0.75, 1e-12);
+  EXPECT_EQ(poses.find(1100000).T_world_body.translation().x(), 0.5);
+}
+
+TEST(PoseBuffer, ForgetsWhatIsOlderThanItsHistory) {
+  PoseBuffer poses{PoseConfig{}};  // ten seconds
+  for (int i = 0; i <= 300; ++i) poses.insert(pose_at(kSecond + i * 100000, 0.1 * i));
+  EXPECT_EQ(poses.newest_utime() - poses.oldest_utime(), 10 * kSecond);
+  EXPECT_EQ(poses.size(), 101u);
+}
+
+TEST(PoseBuffer, AFloodOfPosesIsBounded) {
+  PoseBuffer poses{PoseConfig{}};
+  for (int i = 0; i < 150000; ++i) poses.insert(pose_at(kSecond + i, 0.0));
+  EXPECT_EQ(poses.size(), 100000u);
+  EXPECT_EQ(poses.insert(pose_at(kSecond, 0.0)), PoseInsert::kTooOld);
+}
+
+TEST(PoseBuffer, AStepBackBeyondTheHistoryIsOneRestart) {
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(100 * kSecond, 0.0));
+  poses.insert(pose_at(100 * kSecond + 100000, 0.0));
+  EXPECT_EQ(poses.insert(pose_at(5 * kSecond, 2.0)), PoseInsert::kRestarted);
+  EXPECT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses.insert(pose_at(5 * kSecond + 100000, 2.0)), PoseInsert::kAppended);
+  EXPECT_EQ(poses.find(5 * kSecond + 50000).match, PoseMatch::kFound);
+}
+
+TEST(PoseBuffer, NobodyKnowsWhereTheBodyWasDuringAJump) {
+  PoseBuffer poses{PoseConfig{}};  // 1 m, 45 degrees
+  poses.insert(pose_at(1000000, 0.0));
+  EXPECT_EQ(poses.insert(pose_at(1100000, 0.99)), PoseInsert::kAppended);
+  EXPECT_EQ(poses.insert(pose_at(1200000, 2.0)), PoseInsert::kJumped);
+  EXPECT_EQ(poses.insert(pose_at(1300000, 2.0, 46.0 * std::numbers::pi / 180.0)), PoseInsert::kJumped);
+  EXPECT_EQ(poses.find(1050000).match, PoseMatch::kFound);
+  EXPECT_EQ(poses.find(1150000).match, PoseMatch::kJump);
+  EXPECT_EQ(poses.find(1250000).match, PoseMatch::kJump);
+  EXPECT_EQ(poses.find(1200000).match, PoseMatch::kFound);
+  // Half a minute later it may well be elsewhere.
+  EXPECT_EQ(poses.insert(pose_at(9 * kSecond, 9.0)), PoseInsert::kAppended);
+}
+
+}  // namespace
+}  // namespace planemap::service

@@ -1,0 +1,227 @@
+// The whole service on a bus of its own, with real threads, messages and maps.
+
+#include "service.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+#include <planemap_lcm/planes_t.hpp>
+#include <planemap_lcm/reply_t.hpp>
+#include <planemap_lcm/status_t.hpp>
+
+#include "wire_messages.hpp"
+
+namespace planemap::service {
+namespace {
+
+using planemap_lcm::planes_t;
+using planemap_lcm::reply_t;
+using planemap_lcm::request_t;
+using planemap_lcm::status_t;
+
+constexpr std::int64_t kSecond = 1000000;
+
+/// A client and a sensor on the service's bus.
+class ServiceTest : public testing::Test {
+ protected:
+  ServiceTest() : bus_("memq://"), service_(make_config(), bus_, /*epoch=*/1234) {
+    bus_.subscribe("PLANEMAP_STATUS", &ServiceTest::on_status, this);
+    bus_.subscribe("PLANEMAP_DELTA", &ServiceTest::on_delta, this);
+    bus_.subscribe("PLANEMAP_REPLY.*", &ServiceTest::on_reply, this);
+  }
+  static ServiceConfig make_config() {
+    ServiceConfig config;
+    config.publish.status_period_s = 0.05;
+    config.publish.delta_period_s = 0.01;
+    config.publish.page_bytes = 8192;
+    config.queue.scans = 1000;
+    return config;
+  }
+
+  void send(const std::string& channel, const Bytes& bytes) {
+    ASSERT_EQ(bus_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())), 0);
+  }
+  void send_wall(int i, std::uint16_t depth_mm = 2000) {
+    const std::int64_t utime = 10 * kSecond + i * 33333;
+    send("POSE", encoded(pose_message(utime)));
+    send("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, i, depth_mm))));
+  }
+  /// Handles the bus until the condition holds. @return false after half a minute
+  template <class Condition>
+  bool handle_until(const Condition& holds) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!holds()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      service_.handle(5);
+    }
+    return true;
+  }
+  bool mapped(std::int64_t scans) {
+    return handle_until([&] { return service_.counters().at("scans.mapped") >= scans; });
+  }
+  std::int64_t counter(const std::string& name) const {
+    const auto values = service_.counters();
+    const auto found = values.find(name);
+    return found == values.end() ? 0 : found->second;
+  }
+  /// Asks and waits for the number of pages that the first one tells.
+  std::vector<reply_t> ask(const request_t& request) {
+    replies_.clear();
+    send("PLANEMAP_REQUEST", encoded(request));
+    const bool one_page = request.page >= 0;
+    EXPECT_TRUE(handle_until([&] {
+      return !replies_.empty() && (one_page || replies_.size() == static_cast<std::size_t>(replies_[0].page_count));
+    }));
+    return replies_;
+  }
+
+  void on_status(const lcm::ReceiveBuffer*, const std::string&, const status_t* status) {
+    statuses_.push_back(*status);
+  }
+  void on_delta(const lcm::ReceiveBuffer*, const std::string&, const planes_t* delta) { deltas_.push_back(*delta); }
+  void on_reply(const lcm::ReceiveBuffer*, const std::string&, const reply_t* reply) { replies_.push_back(*reply); }
+
+  lcm::LCM bus_;
+  Service service_;
+  std::vector<status_t> statuses_;
+  std::vector<planes_t> deltas_;
+  std::vector<reply_t> replies_;
+};
+
+TEST_F(ServiceTest, ScansBecomePlanesInDeltas) {
+  for (int i = 0; i < 5; ++i) send_wall(i);
+  ASSERT_TRUE(mapped(5));
+  const auto revision = static_cast<std::int64_t>(service_.snapshot()->revision());
+  ASSERT_TRUE(handle_until([&] { return !deltas_.empty() && deltas_.back().revision == revision; }));
+  std::map<std::int64_t, planemap_lcm::plane_t> planes;
+  std::int64_t told = 0;
+  for (const auto& delta : deltas_) {
+    EXPECT_EQ(delta.epoch, 1234);
+    EXPECT_EQ(delta.since_revision, told) << "deltas follow each other";
+    told = delta.revision;
+    for (const auto& plane : delta.planes) planes[plane.id] = plane;
+    for (const auto& removed : delta.removed) planes.erase(removed.id);
+  }
+  ASSERT_EQ(planes.size(), 1u);
+  const auto& wall = planes.begin()->second;
+  EXPECT_NEAR(wall.normal[2], -1.0, 1e-6);
+  EXPECT_NEAR(wall.d, 2.0, 1e-3);
+  EXPECT_NEAR(wall.area_m2, 2.13 * 1.6, 0.4);
+  EXPECT_EQ(counter("scans.received"), 5);
+  EXPECT_EQ(counter("scans.waiting"), 0);
+}
+
+TEST_F(ServiceTest, SnapshotAndCellsArriveWhole) {
+  for (int i = 0; i < 3; ++i) send_wall(i);
+  ASSERT_TRUE(mapped(3));
+  const auto snapshot = ask(request_message(request_t::OPERATION_SNAPSHOT, 41));
+  ASSERT_EQ(snapshot.size(), 1u);
+  EXPECT_EQ(snapshot[0].request_id, 41);
+  EXPECT_EQ(snapshot[0].status, reply_t::STATUS_OK) << snapshot[0].error;
+  EXPECT_EQ(snapshot[0].epoch, 1234);
+  ASSERT_EQ(snapshot[0].n_planes, 1);
+  EXPECT_EQ(snapshot[0].planes[0].point_count, 3 * 4800);
+  const auto cells = ask(request_message(request_t::OPERATION_CELLS, 42));
+  ASSERT_GT(cells.size(), 1u);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    EXPECT_EQ(cells[i].page, static_cast<std::int32_t>(i));
+    EXPECT_EQ(cells[i].request_id, 42);
+    count += cells[i].cells.size();
+  }
+  EXPECT_GT(count, 200u);
+  auto again = request_message(request_t::OPERATION_CELLS, 43, /*page=*/1);
+  again.epoch = cells[1].epoch;
+  again.revision = cells[1].revision;
+  const auto lost = ask(again);
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].request_id, 43);
+  EXPECT_EQ(lost[0].page, 1);
+  EXPECT_EQ(lost[0].cells.size(), cells[1].cells.size());
+}
+
+TEST_F(ServiceTest, ErrorsAreRepliesToo) {
+  auto reply = ask(request_message(77));
+  ASSERT_EQ(reply.size(), 1u);
+  EXPECT_EQ(reply[0].status, reply_t::STATUS_UNKNOWN_OPERATION);
+  EXPECT_FALSE(reply[0].error.empty());
+  reply = ask(request_message(request_t::OPERATION_SNAPSHOT, 8, /*page=*/3));
+  ASSERT_EQ(reply.size(), 1u);
+  EXPECT_EQ(reply[0].status, reply_t::STATUS_GONE);
+  auto elsewhere = request_message(request_t::OPERATION_STATUS);
+  elsewhere.reply_channel = "PLANEMAP_SCAN";
+  send("PLANEMAP_REQUEST", encoded(elsewhere));
+  send("PLANEMAP_REQUEST", Bytes{1, 2, 3});
+  ASSERT_TRUE(handle_until([&] { return counter("requests.received") == 4; }));
+  EXPECT_EQ(counter("requests.rejected.reply_channel"), 1);
+  EXPECT_EQ(counter("requests.rejected.unknown_type"), 1);
+  EXPECT_EQ(counter("requests.answered_with_error"), 2);
+}
+
+TEST_F(ServiceTest, StatusSaysWhyNothingIsMappedAndThenHowItGoes) {
+  ASSERT_TRUE(handle_until([&] { return !statuses_.empty(); }));
+  EXPECT_EQ(statuses_[0].idle_reason, "no scan on PLANEMAP_SCAN yet");
+  EXPECT_EQ(statuses_[0].epoch, 1234);
+  send("PLANEMAP_SCAN", encoded(wall_message(kSecond, 0)));
+  ASSERT_TRUE(handle_until([&] { return statuses_.back().idle_reason == "no pose on POSE yet"; }));
+  for (int i = 0; i < 3; ++i) send_wall(i + 1);
+  ASSERT_TRUE(mapped(3));
+  const auto seen = statuses_.size();
+  ASSERT_TRUE(handle_until([&] { return statuses_.size() > seen + 1; }));
+  const status_t& status = statuses_.back();
+  EXPECT_EQ(status.idle_reason, "");
+  EXPECT_EQ(status.plane_count, 1);
+  EXPECT_GT(status.cell_count, 200);
+  EXPECT_GT(status.scan_ms_p50, 0.0);
+  EXPECT_EQ(status.last_scan_utime, 10 * kSecond + 3 * 33333);
+  std::map<std::string, std::int64_t> counters;
+  for (const auto& entry : status.counters) counters[entry.name] = entry.value;
+  EXPECT_EQ(counters.at("scans.mapped"), 3);
+  EXPECT_EQ(counters.at("scans.received"), 4);
+  EXPECT_EQ(counters.count("lcm.kernel_drops"), 1u);
+  EXPECT_EQ(ask(request_message(request_t::OPERATION_STATUS)).at(0).n_status, 1);
+}
+
+TEST_F(ServiceTest, HostileMessagesOnEveryChannelLeaveItRunning) {
+  const std::vector<Bytes> hostile = {{},
+                                      {0},
+                                      Bytes(100000, 0xff),
+                                      encoded(request_message(1)),
+                                      encoded(pose_message(-1)),
+                                      encoded(wall_message(-1, 0)),
+                                      encoded(planes_t{})};
+  for (const char* channel : {"PLANEMAP_SCAN", "POSE", "PLANEMAP_REQUEST"}) {
+    for (const auto& bytes : hostile) send(channel, bytes);
+    for (const auto& good :
+         {encoded(wall_message(kSecond, 1)), encoded(pose_message(kSecond)), encoded(request_message(1))}) {
+      const Bytes half(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(good.size() / 2));
+      send(channel, half);
+    }
+  }
+  for (int i = 0; i < 2; ++i) send_wall(i);
+  ASSERT_TRUE(mapped(2));
+  EXPECT_EQ(counter("scans.received"), 12);
+  EXPECT_EQ(counter("scans.rejected.unknown_type") + counter("scans.rejected.truncated") +
+                counter("scans.rejected.size") + counter("scans.rejected.time"),
+            10);
+  EXPECT_EQ(counter("scans.dropped.no_pose"), 0);
+}
+
+TEST_F(ServiceTest, StopsWithScansInTheQueue) {
+  for (int i = 0; i < 20; ++i) send_wall(i);
+  ASSERT_TRUE(mapped(1));
+  service_.stop();
+  EXPECT_EQ(counter("scans.received"),
+            counter("scans.mapped") + counter("scans.waiting") + counter("scans.dropped.shutdown"));
+}
+
+TEST(OpenBus, SaysHowToMendABusThatCannotBeOpened) {
+  const auto bus = open_bus("nosuchprovider://");
+  ASSERT_FALSE(bus);
+  EXPECT_EQ(bus.error().message, "the LCM bus nosuchprovider:// cannot be opened");
+  EXPECT_TRUE(open_bus("memq://"));
+}
+
+}  // namespace
+}  // namespace planemap::service
