@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <planemap/outline.hpp>
+#include <planemap/simulation/simulated_source.hpp>
+#include <planemap/simulation/surface.hpp>
+#include <unordered_map>
+#include <vector>
+
+namespace planemap::accuracy {
+
+/// Which parts of the true surfaces a recording saw: squares of a raster on each surface.
+class SeenSurfaces {
+ public:
+  static constexpr double kPitch_m = 0.04;  ///< edge of a square
+
+  /// @param max_range_m  returns from farther are not mapped, so they don't count as seen
+  SeenSurfaces(const std::vector<simulation::Surface>& surfaces, double max_range_m);
+
+  /// Marks what the frame that the source gave last has returns from.
+  void add(const simulation::SimulatedSource& source, const DepthScan& scan);
+
+  struct Patch {
+    std::size_t surface;       ///< place in surfaces()
+    Eigen::Vector3d centre_m;  ///< world frame
+  };
+  /// All squares that were seen, surface by surface, in an order that depends on the recording alone.
+  std::vector<Patch> patches() const;
+  const std::vector<simulation::Surface>& surfaces() const { return surfaces_; }
+
+ private:
+  std::vector<simulation::Surface> surfaces_;
+  std::vector<PlaneBasis> bases_;
+  double max_range_m_;
+  std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> hits_;
+};
+
+}  // namespace planemap::accuracy

@@ -1,0 +1,262 @@
+#include "planemap/mapper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "rooms.hpp"
+
+namespace planemap {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+double degrees_between(const Vector3d& a, const Vector3d& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / M_PI;
+}
+
+/// A room of 4 x 3 x 2.5 m, turned against the grid; the camera turns round in its middle.
+class Room {
+ public:
+  Room() {
+    const Eigen::Matrix3d R =
+        (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.02, Vector3d::UnitX())).toRotationMatrix();
+    const auto wall = [&](const Vector3d& normal, double distance_m) { walls.push_back({R * normal, distance_m}); };
+    wall(Vector3d::UnitX(), 2.0);
+    wall(-Vector3d::UnitX(), 2.0);
+    wall(Vector3d::UnitY(), 1.5);
+    wall(-Vector3d::UnitY(), 1.5);
+    wall(Vector3d::UnitZ(), 1.2);
+    wall(-Vector3d::UnitZ(), 1.3);
+  }
+  static Isometry3d pose(int step) {
+    const double yaw = 0.35 * step;
+    return testing::looking({0.1, 0.05, 0.0}, {0.1 + std::cos(yaw), 0.05 + std::sin(yaw), 0.8 * std::sin(0.9 * step)});
+  }
+  DepthScan scan(int step) const { return testing::render(walls, pose(step), static_cast<std::uint64_t>(step)); }
+
+  std::vector<testing::Wall> walls;
+};
+
+Mapper mapped(const Room& room, int scans, Preset which = Preset::kBest) {
+  Mapper mapper(preset(which), 7);
+  for (int i = 0; i < scans; ++i) mapper.integrate(room.scan(i), Room::pose(i));
+  return mapper;
+}
+
+TEST(Mapper, ARoomBecomesItsSixPlanes) {
+  const Room room;
+  Mapper mapper = mapped(room, 40);
+  const auto map = mapper.snapshot();
+  std::size_t large = 0;
+  for (const auto& record : map->planes()) {
+    if (record->cell_count < 60) continue;
+    ++large;
+    const auto is_of = [&](const testing::Wall& wall) {
+      return degrees_between(wall.normal, record->plane.normal()) < 0.3 &&
+             std::abs(wall.normal.dot(record->centroid_m) + wall.d) < 0.003;
+    };
+    EXPECT_EQ(std::count_if(room.walls.begin(), room.walls.end(), is_of), 1) << "plane " << record->id;
+  }
+  EXPECT_EQ(large, 6U);
+}
+
+TEST(Mapper, ThePapersReadingFindsTheWallsToo) {
+  const Room room;
+  Mapper mapper = mapped(room, 40, Preset::kPaper);
+  std::size_t found = 0;
+  for (const testing::Wall& wall : room.walls) {
+    const auto map = mapper.snapshot();
+    const auto planes = map->planes();
+    found += std::any_of(planes.begin(), planes.end(), [&](const auto& record) {
+      return record->cell_count > 100 && degrees_between(wall.normal, record->plane.normal()) < 6.0;
+    });
+  }
+  EXPECT_GE(found, 5U);
+}
+
+TEST(Mapper, EveryCellOfAPlaneIsCountedInItsRecord) {
+  Mapper mapper = mapped(Room(), 25);
+  const auto map = mapper.snapshot();
+  std::map<PlaneId, std::uint32_t> cells;
+  std::map<PlaneId, std::uint64_t> points;
+  map->for_each_cell([&](const CellView& cell) {
+    if (cell.plane_id == kNoPlane) return;
+    ++cells[cell.plane_id];
+    points[cell.plane_id] += cell.count;
+  });
+  ASSERT_GE(map->planes().size(), 5U);
+  EXPECT_EQ(cells.size(), map->planes().size());
+  for (const auto& record : map->planes()) {
+    EXPECT_EQ(cells[record->id], record->cell_count);
+    EXPECT_EQ(points[record->id], record->point_count);
+    EXPECT_GT(record->quality, 0.5);
+    EXPECT_LE(record->quality, 1.0);
+  }
+}
+
+TEST(Mapper, TheSameScansGiveTheSameBytes) {
+  const Room room;
+  Mapper a = mapped(room, 15);
+  Mapper b = mapped(room, 15);
+  const auto map_a = a.snapshot();
+  const auto map_b = b.snapshot();
+  ASSERT_EQ(map_a->planes().size(), map_b->planes().size());
+  EXPECT_EQ(map_a->revision(), map_b->revision());
+  for (std::size_t i = 0; i < map_a->planes().size(); ++i) {
+    const PlaneRecord& x = *map_a->planes()[i];
+    const PlaneRecord& y = *map_b->planes()[i];
+    EXPECT_EQ(x.id, y.id);
+    EXPECT_EQ(x.plane.normal(), y.plane.normal());
+    EXPECT_EQ(x.plane.d(), y.plane.d());
+    EXPECT_EQ(x.covariance, y.covariance);
+  }
+}
+
+TEST(Mapper, SnapshotsAreNotChangedByLaterScans) {
+  const Room room;
+  Mapper mapper = mapped(room, 5);
+  const auto before = mapper.snapshot();
+  std::vector<double> centres;
+  before->for_each_cell([&](const CellView& cell) { centres.push_back(cell.centre_m.sum()); });
+  const std::size_t planes = before->planes().size();
+  for (int i = 5; i < 10; ++i) mapper.integrate(room.scan(i), Room::pose(i));
+  std::vector<double> again;
+  before->for_each_cell([&](const CellView& cell) { again.push_back(cell.centre_m.sum()); });
+  EXPECT_EQ(centres, again);
+  EXPECT_EQ(before->planes().size(), planes);
+  EXPECT_GT(mapper.snapshot()->cell_count(), before->cell_count());
+}
+
+TEST(Mapper, DeltasLeadFromOneSnapshotToTheNext) {
+  const Room room;
+  Mapper mapper(preset(Preset::kBest), 7);
+  std::map<PlaneId, std::shared_ptr<const PlaneRecord>> follower;
+  std::uint64_t revision = 0;
+  std::size_t removals = 0;
+  for (int i = 0; i < 30; ++i) {
+    mapper.integrate(room.scan(i), Room::pose(i));
+    if (i % 3 != 2) continue;
+    const auto map = mapper.snapshot();
+    const auto delta = map->delta_since(revision);
+    ASSERT_TRUE(delta.has_value());
+    for (const RemovedPlane& gone : delta->removed) {
+      follower.erase(gone.id);
+      ++removals;
+    }
+    for (const auto& record : delta->changed) follower[record->id] = record;
+    revision = delta->revision;
+    ASSERT_EQ(follower.size(), map->planes().size());
+    for (const auto& record : map->planes()) EXPECT_EQ(follower.at(record->id), record);
+  }
+  EXPECT_GT(revision, 0U);
+}
+
+TEST(Mapper, ADeltaFromTheFutureIsRefused) {
+  Mapper mapper = mapped(Room(), 3);
+  const auto map = mapper.snapshot();
+  EXPECT_FALSE(map->delta_since(map->revision() + 1).has_value());
+  ASSERT_TRUE(map->delta_since(map->revision()).has_value());
+  EXPECT_TRUE(map->delta_since(map->revision())->changed.empty());
+}
+
+TEST(Mapper, AnEmptyScanChangesNothing) {
+  Mapper mapper = mapped(Room(), 3);
+  const auto before = mapper.snapshot();
+  DepthScan nothing;
+  nothing.utime = 99'000'000;
+  nothing.intrinsics = {4, 4, 5.0, 5.0, 2.0, 2.0};
+  nothing.depth.assign(16, kNoReturn);
+  const ScanReport report = mapper.integrate(nothing, Isometry3d::Identity());
+  EXPECT_EQ(report.points.mapped, 0U);
+  EXPECT_FALSE(report.planes_changed);
+  EXPECT_EQ(mapper.snapshot()->revision(), before->revision());
+  EXPECT_EQ(mapper.snapshot()->cell_count(), before->cell_count());
+}
+
+bool near_side(const Vector3d& p) {
+  return p.y() < -0.4;
+}
+bool far_side(const Vector3d& p) {
+  return p.y() > 0.4;
+}
+
+/// Two looks at a wall that has a gap of 0.8 m, a door's width: each sees one piece only.
+std::size_t planes_across_a_gap(double bridge_gap_m, double step_m) {
+  MapperConfig config = preset(Preset::kBest);
+  config.planes.bridge_gap_m = bridge_gap_m;
+  Mapper mapper(config, 1);
+  const std::vector<testing::Wall> wall = {{-Vector3d::UnitX(), 2.5, near_side},
+                                           {-Vector3d::UnitX(), 2.5 + step_m, far_side}};
+  for (int i = 0; i < 6; ++i) {
+    const double y = i % 2 == 0 ? -1.7 : 1.7;
+    const Isometry3d T = testing::looking({0.0, y, 0.1}, {2.5, y, 0.1});
+    mapper.integrate(testing::render(wall, T, static_cast<std::uint64_t>(i)), T);
+  }
+  const auto map = mapper.snapshot();
+  return static_cast<std::size_t>(
+      std::count_if(map->planes().begin(), map->planes().end(), [](const auto& r) { return r->cell_count > 60; }));
+}
+
+TEST(Mapper, PiecesOfAWallAcrossADoorAreOnePlane) {
+  EXPECT_EQ(planes_across_a_gap(1.0, 0.0), 1U);
+}
+
+TEST(Mapper, WithoutBridgingTheyStayTwo) {
+  EXPECT_EQ(planes_across_a_gap(0.0, 0.0), 2U);
+}
+
+TEST(Mapper, PiecesThatAreNotCoplanarAreNotBridged) {
+  EXPECT_EQ(planes_across_a_gap(1.0, 0.05), 2U);
+}
+
+TEST(Mapper, AMergedPlaneNamesTheOnesItHoldsAndTheOldestIdLivesOn) {
+  MapperConfig config = preset(Preset::kBest);
+  Mapper mapper(config, 1);
+  const std::vector<testing::Wall> wall = {{-Vector3d::UnitX(), 2.5, nullptr}};
+  const auto look = [&](double y, std::uint64_t seed) {
+    const Isometry3d T = testing::looking({0.0, y, 0.1}, {2.5, y, 0.1});
+    mapper.integrate(testing::render(wall, T, seed), T);
+  };
+  look(-3.0, 1);  // two pieces 1.5 m and more apart ...
+  look(3.0, 2);
+  ASSERT_EQ(mapper.snapshot()->planes().size(), 2U);
+  const std::uint64_t revision = mapper.snapshot()->revision();
+  look(0.0, 3);  // ... and what lies between them
+  look(-1.5, 4);
+  look(1.5, 5);
+  const auto map = mapper.snapshot();
+  ASSERT_EQ(map->planes().size(), 1U);
+  EXPECT_EQ(map->planes()[0]->id, 1U);
+  EXPECT_EQ(map->planes()[0]->merged, std::vector<PlaneId>{2});
+  EXPECT_EQ(map->find(2), nullptr);
+  const auto delta = map->delta_since(revision);
+  ASSERT_TRUE(delta.has_value());
+  ASSERT_EQ(delta->removed.size(), 1U);
+  EXPECT_EQ(delta->removed[0].id, 2U);
+  EXPECT_EQ(delta->removed[0].merged_into, 1U);
+}
+
+/// Remembers the order in which stages began and ended.
+class Recorder final : public StageObserver {
+ public:
+  void stage_begins(Stage stage) override { log += std::string("<") + name_of(stage); }
+  void stage_ends(Stage) override { log += ">"; }
+  std::string log;
+};
+
+TEST(Mapper, TellsItsStagesInTheOrderOfThePaper) {
+  const Room room;
+  Mapper mapper(preset(Preset::kBest), 1);
+  Recorder recorder;
+  mapper.integrate(room.scan(0), Room::pose(0), &recorder);
+  mapper.snapshot(&recorder);
+  EXPECT_EQ(recorder.log, "<assign><normals><localPlanes><globalPlanes><snapshot>");
+}
+
+}  // namespace
+}  // namespace planemap
