@@ -5,12 +5,6 @@
 
 namespace planemap::simulation {
 
-Eigen::Vector2d Footprint::axis(int k) const {
-  const double c = std::cos(angle_rad);
-  const double s = std::sin(angle_rad);
-  return k == 0 ? Eigen::Vector2d(c, s) : Eigen::Vector2d(-s, c);
-}
-
 Eigen::Vector2d Footprint::point_m(double along_x_m, double along_y_m) const {
   return centre_m + along_x_m * axis(0) + along_y_m * axis(1);
 }
@@ -22,7 +16,7 @@ std::array<Eigen::Vector2d, 4> Footprint::corners_m() const {
 }
 
 Footprint Footprint::grown(double margin_m) const {
-  return {centre_m, half_size_m + Eigen::Vector2d::Constant(margin_m), angle_rad};
+  return {centre_m, half_size_m + Eigen::Vector2d::Constant(margin_m), direction};
 }
 
 double Footprint::distance_m(const Eigen::Vector2d& p_m) const {

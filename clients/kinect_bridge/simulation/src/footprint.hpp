@@ -21,11 +21,12 @@ struct Rectangle {
 struct Footprint {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d half_size_m = Eigen::Vector2d::Zero();
-  double angle_rad = 0.0;  ///< of its own x axis from the apartment's
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< of its own x axis, unit
 
-  static Footprint of(const Rectangle& r) { return {r.centre_m(), 0.5 * r.size_m(), 0.0}; }
+  static Footprint of(const Rectangle& r) { return {r.centre_m(), 0.5 * r.size_m(), Eigen::Vector2d::UnitX()}; }
 
-  Eigen::Vector2d axis(int k) const;                                  ///< unit; k = 0: along x of the footprint, 1: y
+  /// Unit; k = 0: along x of the footprint, 1: y.
+  Eigen::Vector2d axis(int k) const { return k == 0 ? direction : Eigen::Vector2d(-direction.y(), direction.x()); }
   Eigen::Vector2d point_m(double along_x_m, double along_y_m) const;  ///< from the footprint's coordinates
   std::array<Eigen::Vector2d, 4> corners_m() const;                   ///< counter-clockwise
   Footprint grown(double margin_m) const;

@@ -11,8 +11,7 @@
 namespace planemap::simulation {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kSideViewM = 1.1;   // free beside a cabinet, so that its side is seen at less than a grazing angle
+constexpr double kSideViewM = 1.25;  // free beside a cabinet, so that its side is seen at less than a grazing angle
 constexpr double kPassageM = 0.8;    // free around a table: the robot goes round it
 constexpr double kDoorClearM = 1.0;  // free in front of a door
 constexpr double kDoorSideM = 0.2;   // free beside it
@@ -62,7 +61,7 @@ class Furnisher {
       case FurnitureKind::kTallCabinet:
         return {random_.uniform(0.8, 1.6), random_.uniform(0.40, 0.60), random_.uniform(1.9, 2.2)};
       case FurnitureKind::kLowCabinet:
-        return {random_.uniform(1.0, 1.7), random_.uniform(0.40, 0.55), random_.uniform(0.75, 0.90)};
+        return {random_.uniform(1.0, 1.7), random_.uniform(0.40, 0.55), random_.uniform(0.45, 0.65)};
       case FurnitureKind::kSlantedBoard:
         return {random_.uniform(1.0, 1.4), random_.uniform(0.85, 1.1), random_.uniform(1.2, 1.5)};
       case FurnitureKind::kTable:
@@ -130,7 +129,7 @@ class Furnisher {
     item.footprint.centre_m[axis] = wall_m + inwards * 0.5 * size.depth_m;
     item.footprint.centre_m[1 - axis] = along_m;
     // Turned so that the footprint's y axis points into the room; its x axis then runs along the wall or against it.
-    item.footprint.angle_rad = axis == 0 ? -inwards * 0.5 * kPi : (inwards > 0.0 ? 0.0 : kPi);
+    item.footprint.direction = axis == 0 ? Eigen::Vector2d(0.0, -inwards) : Eigen::Vector2d(inwards, 0.0);
     const bool x_runs_up = item.footprint.axis(0)[1 - axis] > 0.0;
     item.low_side_free = !(x_runs_up ? at_begin : at_end);
     item.high_side_free = !(x_runs_up ? at_end : at_begin);
@@ -146,7 +145,8 @@ class Furnisher {
       table.footprint.half_size_m = {0.5 * size.width_m, 0.5 * size.depth_m};
       table.footprint.centre_m = {random_.uniform(floor.min_m.x(), floor.max_m.x()),
                                   random_.uniform(floor.min_m.y(), floor.max_m.y())};
-      table.footprint.angle_rad = random_.uniform(-0.35, 0.35) + (random_.chance(0.5) ? 0.5 * kPi : 0.0);
+      const double angle_rad = random_.uniform(-0.35, 0.35) + (random_.chance(0.5) ? 0.5 * std::numbers::pi : 0.0);
+      table.footprint.direction = {std::cos(angle_rad), std::sin(angle_rad)};
       const auto corners = table.footprint.corners_m();
       const bool inside = std::all_of(corners.begin(), corners.end(),
                                       [&floor](const Eigen::Vector2d& p) { return floor.contains(p, kPassageM); });
@@ -181,7 +181,7 @@ class Furnisher {
     Furniture leaf{FurnitureKind::kDoorLeaf, {}, 0.01, door.height_m - 0.01};
     leaf.footprint.half_size_m = {0.5 * length_m, 0.5 * kLeafThicknessM};
     leaf.footprint.centre_m = hinge_m + 0.03 * into_room + 0.5 * length_m * along + 0.5 * kLeafThicknessM * outwards;
-    leaf.footprint.angle_rad = std::atan2(along.y(), along.x());
+    leaf.footprint.direction = along;
     return leaf;
   }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apartment.hpp"
+#include "coverage.hpp"
 #include "pose_noise.hpp"
 #include "random.hpp"
 #include "tour.hpp"
@@ -20,17 +21,47 @@ enum Stream : std::uint64_t { kLayoutStream = 1, kPoseStream = 2, kDepthStream =
 
 struct World {
   Apartment apartment;
+  std::vector<Surface> surfaces;
   Tour tour;
 };
 
-/// The first apartment of a seed's that a robot can drive through.
+/// Where to look at a surface: its largest piece.
+View view_of(const Surface& surface, const Eigen::Isometry3d& T_apartment_world) {
+  const auto largest =
+      std::max_element(surface.pieces_m.begin(), surface.pieces_m.end(),
+                       [](const ConvexPiece& a, const ConvexPiece& b) { return area_m2(a) < area_m2(b); });
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& corner_m : *largest) middle_m += corner_m / static_cast<double>(largest->size());
+  return {T_apartment_world * middle_m, T_apartment_world.linear() * surface.plane.normal()};
+}
+
+/// A tour that shows every large surface: what the plain one misses, the robot goes and looks at. Empty if there is
+/// none.
+std::optional<Tour> plan_tour(const Apartment& apartment, const std::vector<Surface>& surfaces) {
+  constexpr int kRounds = 4;  // a longer tour is recorded in larger steps, and may miss something else
+  const Eigen::Isometry3d T_apartment_world = apartment.T_world_apartment.inverse();
+  std::vector<View> views;
+  for (int round = 0; round < kRounds; ++round) {
+    auto tour = Tour::plan(apartment, views);
+    if (!tour) return std::nullopt;
+    const std::vector<Surface> missed = poorly_seen(*tour, apartment, surfaces);
+    if (missed.empty()) return tour;
+    for (const Surface& surface : missed) views.push_back(view_of(surface, T_apartment_world));
+  }
+  return std::nullopt;
+}
+
+/// The first apartment of a seed's that a robot can drive through and see.
 World make_world(std::uint64_t seed) {
   Random random(seed, kLayoutStream);
   for (int attempt = 0; attempt < kMaxTries; ++attempt) {
     Apartment apartment = make_apartment(random);
-    if (auto tour = Tour::plan(apartment)) return {std::move(apartment), std::move(*tour)};
+    std::vector<Surface> surfaces = make_surfaces(apartment);
+    if (auto tour = plan_tour(apartment, surfaces)) {
+      return {std::move(apartment), std::move(surfaces), std::move(*tour)};
+    }
   }
-  throw std::runtime_error("SimulatedSource: no apartment that a robot can drive through in 1000 tries");
+  throw std::runtime_error("SimulatedSource: no apartment that a robot can drive through and see in 1000 tries");
 }
 
 const SimulationConfig& checked(const SimulationConfig& config) {
@@ -48,8 +79,7 @@ class SimulatedSource::Impl {
   explicit Impl(const SimulationConfig& wanted)
       : config(checked(wanted)),
         world(make_world(config.seed)),
-        surfaces(make_surfaces(world.apartment)),
-        renderer(surfaces, config.intrinsics),
+        renderer(world.surfaces, config.intrinsics),
         sensor(config.depth_noise, config.intrinsics),
         pose_noise(config.pose_noise, Random(config.seed, kPoseStream)),
         frames_a_tour(config.frames.value_or(
@@ -72,7 +102,6 @@ class SimulatedSource::Impl {
 
   SimulationConfig config;
   World world;
-  std::vector<Surface> surfaces;
   Renderer renderer;
   KinectSensor sensor;
   PoseNoise pose_noise;
@@ -106,7 +135,7 @@ std::optional<Eigen::Vector3d> SimulatedSource::gravity_direction() const {
 }
 
 const std::vector<Surface>& SimulatedSource::truth() const {
-  return impl_->surfaces;
+  return impl_->world.surfaces;
 }
 double SimulatedSource::tour_s() const {
   return impl_->world.tour.duration_s();

@@ -18,9 +18,11 @@ constexpr double kMaxTurnRadPerS = 1.2;   // at any time
 constexpr double kSmoothingS = 0.5;       // standard deviation of the smoothing of the motion
 constexpr double kLeastClearanceM = 0.3;  // of planned paths; smoothing cuts corners by up to 0.1 m
 constexpr double kViewClearanceM = 0.4;   // of the points that are aimed at
-constexpr double kWallDistanceM = 0.65;   // when driving along the walls
-constexpr double kCameraHeightM = 1.15;
-constexpr double kCameraHeightSwayM = 0.1;
+constexpr double kWallDistanceM = 0.6;    // when driving along the walls
+constexpr double kViewDistanceM = 1.5;    // from something that is gone to be looked at
+constexpr double kViewS = 5.0;
+constexpr double kCameraHeightM = 1.2;
+constexpr double kCameraHeightSwayM = 0.08;
 
 double rad(double deg) {
   return deg * kPi / 180.0;
@@ -29,6 +31,10 @@ double rad(double deg) {
 /// A periodic motion between -1 and 1.
 double wave(double time_s, double period_s) {
   return std::sin(2.0 * kPi * time_s / period_s);
+}
+
+double direction_rad(const Eigen::Vector2d& v) {
+  return std::atan2(v.y(), v.x());
 }
 
 std::vector<Footprint> obstacles_of(const Apartment& apartment) {
@@ -42,8 +48,8 @@ std::vector<Footprint> obstacles_of(const Apartment& apartment) {
 /// Puts the tour together, sample by sample.
 class TourPlanner {
  public:
-  explicit TourPlanner(const Apartment& apartment)
-      : plan_(apartment.plan), free_space_(plan_.outline, obstacles_of(apartment)) {}
+  TourPlanner(const Apartment& apartment, const std::vector<View>& views)
+      : plan_(apartment.plan), views_(views), free_space_(plan_.outline, obstacles_of(apartment)) {}
 
   /// One round; empty if a room can't be reached.
   std::vector<Tour::Sample> drive() {
@@ -113,6 +119,10 @@ class TourPlanner {
     std::rotate(corners_m.begin(), nearest, corners_m.end());
     for (const Eigen::Vector2d& corner_m : corners_m) drive_to(corner_m, room);
     drive_to(corners_m.front(), room);
+    for (const View& view : views_) {
+      // A hand's breadth in front of a wall one is in its room.
+      if (room.contains((view.point_m + 0.05 * view.normal).head<2>(), 0.0)) go_and_see(view, room);
+    }
   }
 
   /// Once about itself: up to the ceiling for the first half of each look, down for the other.
@@ -147,27 +157,48 @@ class TourPlanner {
   /// Into another room: looks ahead, to the left and to the right.
   void go_to(const Eigen::Vector2d& goal_m) {
     if ((goal_m - position_m_).norm() < kSpeedMPerS * kSampleS) return;
-    follow(free_space_.path(position_m_, goal_m, kLeastClearanceM),
-           [this](const Eigen::Vector2d& p_m, const Eigen::Vector2d& leg_m) {
-             sample(p_m, std::atan2(leg_m.y(), leg_m.x()) + rad(40.0) * wave(time_s(), 6.0),
-                    rad(-6.0) + rad(16.0) * wave(time_s(), 5.3));
-           });
+    follow(free_space_.path(position_m_, goal_m, kLeastClearanceM), [this](const Eigen::Vector2d& p_m,
+                                                                           const Eigen::Vector2d& leg_m) {
+      sample(p_m, direction_rad(leg_m) + rad(40.0) * wave(time_s(), 6.0), rad(-6.0) + rad(16.0) * wave(time_s(), 5.3));
+    });
   }
 
-  /// Within a room: looks across it.
+  /// Within a room: looks across it, and in each corner from one wall to the other.
   void drive_to(const Eigen::Vector2d& wish_m, const Rectangle& room) {
     const auto goal_m = free_space_.nearest_free(wish_m, room, kViewClearanceM);
     if (!goal_m || (*goal_m - position_m_).norm() < kSpeedMPerS * kSampleS) return;
     const Eigen::Vector2d centre_m = room.centre_m();
+    const auto pitch_rad = [this] { return rad(-11.0) + rad(19.0) * wave(time_s(), 5.3); };
     follow(free_space_.path(position_m_, *goal_m, kLeastClearanceM),
-           [this, centre_m](const Eigen::Vector2d& p_m, const Eigen::Vector2d&) {
-             const Eigen::Vector2d to_centre_m = centre_m - p_m;
-             sample(p_m, std::atan2(to_centre_m.y(), to_centre_m.x()) + rad(60.0) * wave(time_s(), 7.0),
-                    rad(-8.0) + rad(18.0) * wave(time_s(), 5.3));
+           [&](const Eigen::Vector2d& p_m, const Eigen::Vector2d&) {
+             sample(p_m, direction_rad(centre_m - p_m) + rad(60.0) * wave(time_s(), 7.0), pitch_rad());
            });
+    const double across_rad = direction_rad(centre_m - position_m_);
+    for (const double end_rad : {across_rad - rad(75.0), across_rad + rad(75.0)}) {
+      while (std::abs(std::remainder(raw_.back().yaw_rad - end_rad, 2.0 * kPi)) > 1e-9) {
+        sample(position_m_, end_rad, pitch_rad());
+      }
+    }
+  }
+
+  /// Stops in front of something, or beside it if it lies level, and looks at it.
+  void go_and_see(const View& view, const Rectangle& room) {
+    const Eigen::Vector2d target_m = view.point_m.head<2>();
+    const auto goal_m =
+        free_space_.nearest_free(target_m + kViewDistanceM * view.normal.head<2>(), room, kViewClearanceM);
+    if (!goal_m) return;
+    go_to(*goal_m);
+    const Eigen::Vector2d to_target_m = target_m - position_m_;
+    const double pitch_rad = std::atan2(view.point_m.z() - kCameraHeightM, to_target_m.norm());
+    turn_to(direction_rad(to_target_m));
+    for (double stay_s = 0.0; stay_s < kViewS; stay_s += kSampleS) {
+      sample(position_m_, direction_rad(to_target_m) + rad(12.0) * wave(stay_s, kViewS),
+             std::clamp(pitch_rad, rad(-40.0), rad(40.0)));
+    }
   }
 
   const FloorPlan& plan_;
+  const std::vector<View>& views_;
   FreeSpace free_space_;
   std::vector<Tour::Sample> raw_;
   Eigen::Vector2d position_m_ = Eigen::Vector2d::Zero();
@@ -197,8 +228,8 @@ Tour::Tour(const std::vector<Sample>& raw)
   }
 }
 
-std::optional<Tour> Tour::plan(const Apartment& apartment) {
-  TourPlanner planner(apartment);
+std::optional<Tour> Tour::plan(const Apartment& apartment, const std::vector<View>& views) {
+  TourPlanner planner(apartment, views);
   const std::vector<Sample> raw = planner.drive();
   if (raw.empty()) return std::nullopt;
   const Tour tour(raw);

@@ -8,12 +8,19 @@
 
 namespace planemap::simulation {
 
+/// Something to look at.
+struct View {
+  Eigen::Vector3d point_m;  ///< apartment's frame
+  Eigen::Vector3d normal;   ///< unit: the side to look from
+};
+
 /// A robot's round through all rooms of an apartment, ending where it began: in each room it turns once about itself in
 /// the middle, looking up and down, then drives along the walls and looks across the room.
 class Tour {
  public:
   /// Empty if a room can't be reached, or only through a gap that is too narrow.
-  static std::optional<Tour> plan(const Apartment& apartment);
+  /// @param views  what to go and look at besides
+  static std::optional<Tour> plan(const Apartment& apartment, const std::vector<View>& views);
 
   double duration_s() const;
   /// Where the camera is. Smooth, and periodic in the duration.

@@ -33,12 +33,14 @@ class KinectSensor {
  private:
   double lost_share(float cos_incidence) const;
   bool beside_step(const RenderedImage& image, int u, int v) const;
-  std::uint16_t reading(float depth_m, std::uint64_t random_bits) const;
+  std::uint16_t to_millimetres(double disparity_px) const;
 
   DepthNoiseConfig config_;
   PinholeIntrinsics intrinsics_;
-  double disparity_px_m_;      // disparity times depth: f b
-  double disparity_sigma_px_;  // from k and the scale; the same at every depth
+  double disparity_px_m_;                           // disparity times depth: f b
+  double disparity_sigma_px_;                       // from k and the scale; the same at every depth
+  std::vector<float> quantiles_;                    // of the normal distribution
+  std::vector<std::uint16_t> millimetres_of_step_;  // depth for each step of the disparity; empty: not quantised
 };
 
 }  // namespace planemap::simulation
