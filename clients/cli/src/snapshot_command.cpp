@@ -28,7 +28,7 @@ ExitCode run(const SnapshotOptions& options) {
   if (options.json) {
     write_planes_json(*map, std::cout);
   } else {
-    std::cout << fmt::format("map {}, revision {}, frame {}: {} planes\n", map->epoch, map->revision, map->frame,
+    std::cout << fmt::format("map {}, revision {}, frame {}; planes: {}\n", map->epoch, map->revision, map->frame,
                              map->planes.size())
               << plane_table(*map);
   }

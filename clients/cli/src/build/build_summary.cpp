@@ -65,9 +65,9 @@ Spread spread_of(std::vector<double> values) {
 
 std::string summary_text(const BuildResult& result, const ExportMap& map) {
   const PointCounts& points = result.points;
-  std::string text = fmt::format("{} scans mapped in {:.1f} s; {:.2f} million points, {:.2f} million of them mapped\n",
-                                 result.mapped(), result.seconds, static_cast<double>(points.total) * 1e-6,
-                                 static_cast<double>(points.mapped) * 1e-6);
+  std::string text =
+      fmt::format("scans mapped: {} in {:.1f} s; points: {:.2f} million, mapped {:.2f} million\n", result.mapped(),
+                  result.seconds, static_cast<double>(points.total) * 1e-6, static_cast<double>(points.mapped) * 1e-6);
   Counts skipped;
   for (const auto& [reason, count] : result.skipped) skipped[reason] = static_cast<std::int64_t>(count);
   const auto list = [&](const char* what, const Counts& counts) {
@@ -77,9 +77,9 @@ std::string summary_text(const BuildResult& result, const ExportMap& map) {
   list("dropped", counters_below(result, "scans.dropped."));
   list("rejected", counters_below(result, "scans.rejected."));
   if (result.gaps > 0)
-    text += fmt::format("damaged: {} stretches of the log, {} bytes\n", result.gaps, result.gap_bytes);
+    text += fmt::format("damaged stretches of the log: {}, {} bytes\n", result.gaps, result.gap_bytes);
   text += '\n' + times_text(result.times) + '\n';
-  text += fmt::format("map {}, revision {}, frame {}: {} planes, {} cells\n", map.epoch, map.revision, map.frame,
+  text += fmt::format("map {}, revision {}, frame {}; planes: {}, cells: {}\n", map.epoch, map.revision, map.frame,
                       map.planes.size(), result.snapshot->cell_count());
   return text + plane_table(map);
 }

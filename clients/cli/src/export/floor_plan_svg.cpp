@@ -271,7 +271,7 @@ class Drawing {
     });
     for (std::size_t i = 0; i < std::min(planes.size(), kLegendRows); ++i, y += kLegendRow) draw_row(*planes[i], x, y);
     if (planes.size() > kLegendRows) {
-      print(R"(<text class="sub" x="{:.1f}" y="{:.1f}">and {} smaller ones</text>)"
+      print(R"(<text class="sub" x="{:.1f}" y="{:.1f}">and {} more</text>)"
             "\n",
             x + 22.0, y + 4.0, planes.size() - kLegendRows);
     }

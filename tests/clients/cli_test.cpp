@@ -1,0 +1,279 @@
+// Runs the built program as a user does.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <zlib.h>
+
+#include <bot_core/pose_t.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <lcm/lcm-cpp.hpp>
+#include <nlohmann/json.hpp>
+#include <planemap_lcm/depth_scan_t.hpp>
+#include <string>
+#include <vector>
+
+namespace planemap::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+class CliTest : public testing::Test {
+ protected:
+  CliTest() {
+    std::string pattern = (fs::temp_directory_path() / "planemap-cli-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~CliTest() override { fs::remove_all(folder_); }
+
+  /// Runs "planemap ARGUMENTS"; arguments are the shell's.
+  Outcome planemap(const std::string& arguments) const {
+    const fs::path out = folder_ / "stdout";
+    const fs::path err = folder_ / "stderr";
+    const std::string command =
+        std::string("'") + PLANEMAP_PROGRAM + "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+    const int status = std::system(command.c_str());
+    EXPECT_TRUE(WIFEXITED(status)) << command;
+    return {WEXITSTATUS(status), contents_of(out), contents_of(err)};
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+/// One wall 2 m before the camera, tilted by 0.1 in x, 160x120.
+planemap_lcm::depth_scan_t wall_scan(std::int64_t utime) {
+  planemap_lcm::depth_scan_t scan{};
+  scan.utime = utime;
+  scan.width = 160;
+  scan.height = 120;
+  scan.fx = scan.fy = 146.0;
+  scan.cx = 80.0;
+  scan.cy = 60.0;
+  scan.depth_scale_m = 0.001;
+  scan.encoding = planemap_lcm::depth_scan_t::ENCODING_RAW;
+  for (int v = 0; v < scan.height; ++v) {
+    for (int u = 0; u < scan.width; ++u) {
+      const double slope = 0.1 * (u - scan.cx) / scan.fx;  // z = 2 m + 0.1 x
+      const auto depth = static_cast<std::uint16_t>(2000.0 / (1.0 - slope) + 0.5);
+      scan.data.push_back(static_cast<std::uint8_t>(depth & 0xffu));
+      scan.data.push_back(static_cast<std::uint8_t>(depth >> 8u));
+    }
+  }
+  scan.size = static_cast<std::int32_t>(scan.data.size());
+  scan.crc32 = static_cast<std::int32_t>(crc32(0, scan.data.data(), static_cast<uInt>(scan.data.size())));
+  return scan;
+}
+
+template <class Message>
+void write_event(lcm::LogFile& log, const char* channel, std::int64_t utime, const Message& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  lcm::LogEvent event{};
+  event.timestamp = utime;
+  event.channel = channel;
+  event.datalen = static_cast<int>(bytes.size());
+  event.data = bytes.data();
+  ASSERT_EQ(log.writeEvent(&event), 0);
+}
+
+/// Scans of the wall by a camera at rest, and its poses.
+void write_wall_log(const std::string& path, int scans) {
+  lcm::LogFile log(path, "w");
+  ASSERT_TRUE(log.good());
+  for (int k = 0; k < scans; ++k) {
+    const std::int64_t utime = 1'000'000 + 33'333 * k;
+    bot_core::pose_t pose{};
+    pose.utime = utime;
+    pose.orientation[0] = 1.0;
+    write_event(log, "POSE", utime, pose);
+    write_event(log, "PLANEMAP_SCAN", utime, wall_scan(utime));
+  }
+}
+
+TEST_F(CliTest, HelpAndVersionAreThereForEveryCommand) {
+  for (const char* command : {"", "build", "status", "snapshot", "export"}) {
+    const Outcome outcome = planemap(std::string(command) + " --help");
+    EXPECT_EQ(outcome.code, 0) << command;
+    EXPECT_NE(outcome.out.find("--help"), std::string::npos) << command;
+  }
+  const Outcome version = planemap("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("planemap ", 0), 0u) << version.out;
+}
+
+TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
+  write_wall_log(path("log"), 1);
+  const std::string log = "'" + path("log") + "'";
+  struct Case {
+    std::string arguments;
+    std::string said;
+  };
+  const std::vector<Case> cases = {
+      {"", "subcommand"},
+      {"fly", "fly"},
+      {"build", "INPUT"},
+      {"build '" + path("missing") + "'", "missing"},
+      {"build " + log + " --export '" + path("map.xyz") + "'", ".svg"},
+      {"build " + log + " --export '" + path("nowhere/map.json") + "'", "nowhere"},
+      {"build " + log + " --set grid.cell_sise_m=1", "cell_sise_m"},
+      {"build " + log + " --set grid.cell_size_m=wide", "grid.cell_size_m"},
+      {"build " + log + " --preset fancy", "fancy"},
+      {"build " + log + " --config '" + path("missing.yaml") + "'", "missing.yaml"},
+      {"build " + log + " --intrinsics 500,500,320,240", "--intrinsics"},
+      {"build '" + folder_.string() + "' --intrinsics 500,500", "--intrinsics"},
+      {"export - '" + path("map.xyz") + "'", ".csv"},
+      {"export map.planemap '" + path("map.csv") + "'", "map.planemap"},
+      {"status --timeout 0", "timeout"},
+  };
+  for (const Case& wrong : cases) {
+    const Outcome outcome = planemap(wrong.arguments);
+    EXPECT_EQ(outcome.code, 2) << wrong.arguments;
+    EXPECT_NE((outcome.err + outcome.out).find(wrong.said), std::string::npos)
+        << wrong.arguments << ": " << outcome.err;
+  }
+}
+
+TEST_F(CliTest, InputsThatAreNoRecordingsFailWithAReason) {
+  std::ofstream(path("text")) << "this is no log";
+  const Outcome text = planemap("build '" + path("text") + "'");
+  EXPECT_EQ(text.code, 1);
+  EXPECT_NE(text.err.find("is no LCM event log"), std::string::npos) << text.err;
+
+  fs::create_directory(path("empty"));
+  const Outcome folder = planemap("build '" + path("empty") + "'");
+  EXPECT_EQ(folder.code, 1);
+  EXPECT_NE(folder.err.find(path("empty")), std::string::npos) << folder.err;
+}
+
+TEST_F(CliTest, ALogWithoutScansFailsAndNamesItsChannels) {
+  {
+    lcm::LogFile log(path("log"), "w");
+    bot_core::pose_t pose{};
+    pose.utime = 1;
+    pose.orientation[0] = 1.0;
+    write_event(log, "POSE", 1, pose);
+    write_event(log, "LIDAR", 2, pose);
+  }
+  const Outcome outcome = planemap("build '" + path("log") + "' --export '" + path("map.json") + "'");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("LIDAR"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(path("map.json")));
+}
+
+TEST_F(CliTest, NoDaemonIsThreeWithASentence) {
+  for (const std::string command : {"status", "snapshot", "status --json", "export - map.json"}) {
+    // A bus of the process's own: there is nobody else on it.
+    const Outcome outcome = planemap(command + " --lcm-url memq:// --timeout 0.1");
+    EXPECT_EQ(outcome.code, 3) << command;
+    EXPECT_NE(outcome.err.find("planemapd"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  }
+}
+
+TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
+  write_wall_log(path("log"), 8);
+  const auto build = [&](const std::string& name) {
+    std::string arguments = "build '" + path("log") + "' --json --set 'map.gravity=[0, 1, 0]'";
+    for (const char* extension : {".json", ".csv", ".ply", ".svg"})
+      arguments += " --export '" + path(name + extension) + "'";
+    const Outcome outcome = planemap(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto summary = build("first");
+  EXPECT_EQ(summary["scans"], 8);
+  EXPECT_EQ(summary["points"]["total"], 8 * 160 * 120);
+  EXPECT_TRUE(summary["dropped"].empty()) << summary;
+  EXPECT_EQ(summary["planes"], 1);
+  EXPECT_GT(summary["cells"], 100);
+  EXPECT_GT(summary["msPerScan"]["p50"], 0.0);
+  EXPECT_GE(summary["msPerScan"]["max"], summary["msPerScan"]["p50"]);
+  EXPECT_TRUE(summary["msPerScan"]["stages"].contains("assign"));
+
+  const auto map = nlohmann::json::parse(contents_of(path("first.json")));
+  ASSERT_EQ(map["planes"].size(), 1u);
+  EXPECT_EQ(map["planes"][0]["class"], "wall");
+  // z = 2 + 0.1 x, seen from the origin: the normal is (0.1, 0, -1) / |(0.1, 0, -1)|.
+  EXPECT_NEAR(map["planes"][0]["normal"][0].get<double>(), 0.1 / std::sqrt(1.01), 1e-3);
+  EXPECT_NEAR(map["planes"][0]["normal"][2].get<double>(), -1.0 / std::sqrt(1.01), 1e-3);
+  EXPECT_NEAR(map["planes"][0]["d"].get<double>(), 2.0 / std::sqrt(1.01), 2e-3);
+  EXPECT_EQ(map["epoch"], summary["epoch"]);
+
+  build("second");
+  for (const char* extension : {".json", ".csv", ".ply", ".svg"}) {
+    EXPECT_EQ(contents_of(path(std::string("first") + extension)), contents_of(path(std::string("second") + extension)))
+        << extension;
+  }
+}
+
+TEST_F(CliTest, TheEpochNamesInputAndSettings) {
+  write_wall_log(path("log"), 2);
+  const auto epoch = [&](const std::string& more) {
+    const Outcome outcome = planemap("build '" + path("log") + "' --json " + more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out)["epoch"].get<std::uint64_t>();
+  };
+  const auto first = epoch("");
+  EXPECT_EQ(epoch(""), first);
+  EXPECT_NE(epoch("--set grid.cell_size_m=0.1"), first);
+  EXPECT_NE(epoch("--frames 1"), first);
+  EXPECT_LT(first, 1ull << 53u);
+  write_wall_log(path("log"), 3);
+  EXPECT_NE(epoch(""), first);
+}
+
+TEST_F(CliTest, FramesLimitsTheScansOfALog) {
+  write_wall_log(path("log"), 6);
+  const Outcome outcome = planemap("build '" + path("log") + "' --json --frames 4");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["scans"], 4);
+}
+
+TEST_F(CliTest, QuietPrintsNothingAndTheSummaryNamesThePlanes) {
+  write_wall_log(path("log"), 8);
+  const Outcome quiet = planemap("build '" + path("log") + "' --quiet");
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  const Outcome summary = planemap("build '" + path("log") + "'");
+  EXPECT_EQ(summary.code, 0);
+  EXPECT_NE(summary.out.find("scans mapped: 8"), std::string::npos) << summary.out;
+  EXPECT_NE(summary.out.find("ms per scan"), std::string::npos);
+  EXPECT_NE(summary.out.find("planes: 1"), std::string::npos);
+  EXPECT_EQ(summary.err, "") << "no progress where stderr is no terminal";
+}
+
+TEST_F(CliTest, TheRedKitchenBuildsTheSameTwice) {
+  const char* data = std::getenv("PLANEMAP_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "PLANEMAP_TEST_DATA is not set";
+  const std::string build = std::string("build '") + data + "/redkitchen' --frames 12 --json --export '";
+  const Outcome first = planemap(build + path("first.json") + "'");
+  ASSERT_EQ(first.code, 0) << first.err;
+  ASSERT_EQ(planemap(build + path("second.json") + "'").code, 0);
+  EXPECT_EQ(contents_of(path("first.json")), contents_of(path("second.json")));
+  const auto summary = nlohmann::json::parse(first.out);
+  EXPECT_EQ(summary["scans"], 12);
+  EXPECT_EQ(summary["points"]["total"], 12 * 640 * 480);
+  EXPECT_GT(summary["planes"], 3);
+  bool classified = false;  // the folder's gravity was taken
+  for (const auto& plane : nlohmann::json::parse(contents_of(path("first.json")))["planes"]) {
+    classified = classified || plane["class"] != "other";
+  }
+  EXPECT_TRUE(classified);
+}
+
+}  // namespace
+}  // namespace planemap::cli
