@@ -1,0 +1,154 @@
+#include "options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <numbers>
+
+#ifndef PLANEMAP_VERSION
+#error "PLANEMAP_VERSION is set by the build"
+#endif
+
+namespace planemap::kinect_bridge {
+namespace {
+
+constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
+constexpr double kMaxRateHz = 10000.0;
+
+/// What CLI11 fills, where it is not the option itself.
+struct Raw {
+  std::string scene;
+  std::string camera;
+  std::optional<std::size_t> frames;
+  double pose_noise_deg = 0.0;
+  bool wall_clock = false;
+};
+
+void add_source_options(CLI::App& app, Options& options, Raw& raw) {
+  auto* source = app.add_option_group("Source", "where the frames come from: one of");
+  auto* dataset = source->add_option("--dataset", options.dataset,
+                                     "7-Scenes or TUM RGB-D folder; the body of the pose messages is its camera");
+  auto* simulate = source->add_option("--simulate", raw.scene, "a rendered scene whose planes are known: apartment")
+                       ->check(CLI::IsMember({"apartment"}));
+  source->require_option(1);
+
+  app.add_option(
+         "--frames", raw.frames,
+         "stop after N frames; a simulation spreads them evenly over one tour through all rooms (default: all; one "
+         "tour at true speed)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}));
+  app.add_flag("--loop", options.loop, "begin again at the end, until stopped; utimes go on");
+  app.add_option("--intrinsics", raw.camera, "fx,fy,cx,cy in pixels, instead of the folder's own")->needs(dataset);
+  app.add_option("--depth-scale", options.folder.depth_scale_m,
+                 "metres per unit of depth (default: 7-Scenes 0.001, TUM 0.0002)")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->needs(dataset);
+  app.add_option("--seed", options.simulation.seed, "of apartment, tour and noise")
+      ->capture_default_str()
+      ->needs(simulate);
+  app.add_option("--truth", options.truth_path, "write the known planes to this file, as planes.json")->needs(simulate);
+  app.add_option("--noise", options.simulation.depth_noise.scale,
+                 "times the depth noise of a Kinect; 0: exact depth, nothing lost")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100.0))
+      ->needs(simulate);
+  app.add_option("--pose-noise-m", options.simulation.pose_noise.sigma_m, "standard error of positions, each axis")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0))
+      ->needs(simulate);
+  app.add_option("--pose-noise-deg", raw.pose_noise_deg, "standard error of rotations, each axis")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 90.0))
+      ->needs(simulate);
+  app.add_option("--pose-correlation-s", options.simulation.pose_noise.correlation_s,
+                 "time in which pose errors wander; 0: new for each frame")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(simulate);
+}
+
+void add_output_options(CLI::App& app, Options& options, Raw& raw) {
+  app.add_option("--rate", options.feed.rate_hz, "frames a second (default: as recorded; simulation 30)")
+      ->check(CLI::Range(0.001, kMaxRateHz));
+  app.add_option("--pose-rate", options.feed.pose_rate_hz,
+                 "poses a second between the frames, interpolated (default: one with each frame)")
+      ->check(CLI::Range(0.001, kMaxRateHz));
+  app.add_option("--encoding", options.feed.encoding, "of the depth images: zlib or raw (default: zlib)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Encoding>{{"zlib", Encoding::kZlib}, {"raw", Encoding::kRaw}}))
+      ->type_name("zlib|raw");
+  app.add_option("--channel", options.feed.channel, "of the scans")->capture_default_str();
+  app.add_option("--pose-channel", options.feed.pose_channel, "of the poses")->capture_default_str();
+  auto* url = app.add_option("-l,--lcm-url", options.lcm_url,
+                             "where to publish (default: $LCM_DEFAULT_URL, or " + std::string(kDefaultUrl) + ")");
+  auto* log =
+      app.add_option("--log", options.log_path,
+                     "write an LCM event log instead of publishing, as fast as it goes; its times are the frames'");
+  log->excludes(url);
+  app.add_flag("--wall-clock", raw.wall_clock,
+               "stamp a dataset's frames with the present time, as a simulation's are, and not as recorded")
+      ->excludes(log);
+  app.add_flag("-q,--quiet", options.quiet, "no progress, no summary");
+  app.add_flag("--json", options.json, "a summary as JSON on standard output at the end");
+}
+
+void check_channel(const std::string& option, const std::string& channel) {
+  constexpr std::size_t kMaxChannel = 63;  // LCM's limit
+  if (channel.empty() || channel.size() > kMaxChannel) {
+    throw CLI::ValidationError(option, "a channel has 1 to 63 characters");
+  }
+}
+
+/// What follows from the options together.
+void complete(Options& options, const Raw& raw) {
+  check_channel("--channel", options.feed.channel);
+  check_channel("--pose-channel", options.feed.pose_channel);
+  if (!raw.camera.empty()) {
+    const auto camera = sources::parse_camera_parameters(raw.camera);
+    if (!camera) throw CLI::ValidationError("--intrinsics", camera.error().message);
+    options.folder.camera = *camera;
+  }
+  const bool simulated = options.dataset.empty();
+  const bool logged = !options.log_path.empty();
+  if (logged && options.loop && !raw.frames) {
+    throw CLI::ValidationError("--loop", "a log would never end: say how long with --frames");
+  }
+  if (logged && !simulated && options.feed.rate_hz) {
+    throw CLI::ValidationError("--rate", "the log of a dataset keeps the recorded times");
+  }
+  options.feed.wall_clock = !logged && (simulated || raw.wall_clock);
+  options.feed.paced = !logged;
+  if (simulated) {
+    options.simulation.loop = options.loop;
+    options.simulation.pose_noise.sigma_rad = raw.pose_noise_deg * std::numbers::pi / 180.0;
+    if (options.feed.rate_hz) options.simulation.rate_hz = *options.feed.rate_hz;
+    options.simulation.frames = raw.frames;  // a tour's
+  }
+  // A simulated tour ends by itself; one that is looped for publishing does not.
+  if (!simulated || logged) options.feed.frames = raw.frames;
+  if (options.lcm_url.empty()) {
+    const char* url = std::getenv("LCM_DEFAULT_URL");
+    options.lcm_url = url != nullptr && *url != '\0' ? url : kDefaultUrl;
+  }
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, char** argv) {
+  CLI::App app("Feeds planemap: publishes a recorded or a simulated Kinect's depth images and poses over LCM.",
+               "planemap-kinect-bridge");
+  app.set_version_flag("--version", "planemap-kinect-bridge " PLANEMAP_VERSION, "Print the version and exit");
+  app.footer("Exit codes: 0 done or stopped by a signal, 1 failed, 2 wrong use.");
+  Options options;
+  Raw raw;
+  add_source_options(app, options, raw);
+  add_output_options(app, options, raw);
+  try {
+    app.parse(argc, argv);
+    complete(options, raw);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
+  }
+  return {options, 0};
+}
+
+}  // namespace planemap::kinect_bridge
