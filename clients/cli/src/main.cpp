@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "command.hpp"
 
@@ -10,6 +11,17 @@
 
 namespace planemap::cli {
 namespace {
+
+/// What to say of a command that does not exist; CLI11 would only say that one is required. Empty: nothing.
+std::string unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return {};
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  return std::string("there is no command '") + argv[1] + "'; there are " + known;
+}
 
 ExitCode run(int argc, char** argv) {
   CLI::App app("Builds plane maps from recorded scans, and asks a running planemapd for its map.", "planemap");
@@ -21,6 +33,9 @@ ExitCode run(int argc, char** argv) {
   add_status_command(app, action);
   add_snapshot_command(app, action);
   add_export_command(app, action);
+  if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
+    return complain(ExitCode::kWrongUse, unknown);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
