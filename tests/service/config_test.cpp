@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -119,7 +120,7 @@ TEST(Config, FileThenOverridesWin) {
 }
 
 TEST(Config, EmptyFileIsTheDefault) {
-  for (const char* text : {"", "# nothing but a comment\n", "---\n"}) {
+  for (const char* text : {"", "# nothing but a comment\n", "---\n", "grid:\n  # cell_size_m: 1\npose:\n"}) {
     const auto config = load_text(text);
     ASSERT_TRUE(config) << config.error().message;
     EXPECT_EQ(to_yaml(*config), defaults_yaml());
@@ -137,7 +138,7 @@ TEST(Config, EveryProblemIsListedWithItsLine) {
             "F:3: grid.density_threshold: '12.5' is not a whole number (allowed: 0 to 1000000000)\n"
             "F:2: grid.cell_size: unknown key; did you mean cell_size_m?\n"
             "F:5: queue.scans: 0 is out of range (allowed: 1 to 1000)\n"
-            "F:7: gird: unknown key; did you mean grid?");
+            "F:6: gird: unknown key; did you mean grid?");
 }
 
 struct BadText {
@@ -154,7 +155,7 @@ TEST(Config, SaysWhatIsWrongWithEachKindOfValue) {
       {"grid:\n  cell_size_m: .nan\n", "F:2: grid.cell_size_m: '.nan' is not a number (allowed: 0.005 to 10)"},
       {"grid:\n  cell_size_m: nan\n", "F:2: grid.cell_size_m: nan is out of range (allowed: 0.005 to 10)"},
       {"grid:\n  cell_size_m: [1]\n", "F:2: grid.cell_size_m: must be a number, not a list"},
-      {"grid:\n  cell_size_m:\n", "F:2: grid.cell_size_m: must be a number, not nothing"},
+      {"grid:\n  cell_size_m:\n", "F:2: grid.cell_size_m: has no value"},
       {"grid:\n  clamp_centres: yes\n", "F:2: grid.clamp_centres: 'yes' is not a truth value (allowed: true, false)"},
       {"normals:\n  fit: best\n", "F:2: normals.fit: 'best' is not known (allowed: centres, pooled)"},
       {"log:\n  level: loud\n", "F:2: log.level: 'loud' is not known (allowed: trace, debug, info, warn, error)"},

@@ -26,7 +26,7 @@ RegisteredScan wall_scan(std::int64_t utime) {
   DepthScan scan;
   scan.utime = utime;
   scan.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
-  scan.depth.assign(80 * 60, 2000);
+  scan.depth.assign(80 * 60, 1000);
   return RegisteredScan{0, scan, Eigen::Isometry3d::Identity()};
 }
 
@@ -74,7 +74,9 @@ TEST(Counters, EveryScanIsAccountedForAtEveryInstantWhileThreadsRun) {
   ServiceConfig config;
   config.queue.scans = 2;
   Counters counters;
-  MappingService mapping(config, 1, counters, {});
+  std::promise<void> mapped;
+  std::once_flag once;
+  MappingService mapping(config, 1, counters, [&] { std::call_once(once, [&] { mapped.set_value(); }); });
   ScanIntake intake(
       config, counters, [&](RegisteredScan&& scan) { mapping.push(std::move(scan)); }, [](const std::string&) {});
   std::atomic<bool> is_done = false;
@@ -96,6 +98,7 @@ TEST(Counters, EveryScanIsAccountedForAtEveryInstantWhileThreadsRun) {
     intake.on_message("PLANEMAP_SCAN", encoded(i % 7 == 0 ? broken : wall_message(utime, i)), 0.0);
   }
   intake.finish();
+  mapped.get_future().wait();
   mapping.stop();
   is_done = true;
   EXPECT_GT(watcher.get(), 0);
@@ -121,7 +124,7 @@ TEST(MappingService, PublishesASnapshotAfterEachScan) {
   const auto after = mapping.snapshot();
   EXPECT_EQ(before->planes().size(), 0u) << "a snapshot never changes";
   ASSERT_EQ(after->planes().size(), 1u);
-  EXPECT_NEAR(after->planes()[0]->plane.signed_distance_m({0.0, 0.0, 2.0}), 0.0, 1e-3);
+  EXPECT_NEAR(after->planes()[0]->plane.signed_distance_m({0.0, 0.0, 1.0}), 0.0, 1e-3);
   EXPECT_NEAR(after->planes()[0]->plane.normal().z(), -1.0, 1e-6);
   EXPECT_EQ(after->utime(), 5 * kSecond);
   const MappingStats stats = mapping.stats(steady_now_s());

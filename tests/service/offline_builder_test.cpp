@@ -50,7 +50,7 @@ TEST(OfflineBuilder, MapsFramesAtTheirPoses) {
   DepthScan scan;
   scan.utime = kSecond;
   scan.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
-  scan.depth.assign(80 * 60, 2000);
+  scan.depth.assign(80 * 60, 1000);
   scan.depth[0] = kNoReturn;
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   T_world_sensor.translation().z() = 10.0;
@@ -59,7 +59,7 @@ TEST(OfflineBuilder, MapsFramesAtTheirPoses) {
   EXPECT_EQ(report.new_planes, 1u);
   const auto snapshot = builder.snapshot();
   ASSERT_EQ(snapshot->planes().size(), 1u);
-  EXPECT_NEAR(snapshot->planes()[0]->plane.signed_distance_m({0.0, 0.0, 12.0}), 0.0, 1e-3);
+  EXPECT_NEAR(snapshot->planes()[0]->plane.signed_distance_m({0.0, 0.0, 11.0}), 0.0, 1e-3);
   EXPECT_EQ(builder.counters().at("scans.mapped"), 1);
 }
 
@@ -69,7 +69,7 @@ TEST(OfflineBuilder, TheSameCallsGiveTheSameMap) {
     for (int i = 0; i < 5; ++i) {
       const std::int64_t utime = kSecond + i * 66667;
       builder->add_event("POSE", encoded(pose_message(utime, 0.013 * i)));
-      builder->add_event("PLANEMAP_SCAN", encoded(wall_message(utime, i, static_cast<std::uint16_t>(2000 + i))));
+      builder->add_event("PLANEMAP_SCAN", encoded(wall_message(utime, i, static_cast<std::uint16_t>(1000 + i))));
     }
     builder->finish();
     return builder->snapshot();

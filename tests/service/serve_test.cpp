@@ -201,17 +201,17 @@ TEST(DeltaMaker, TellsWhatChangedAndNothingTwice) {
   Walls walls;
   PlaneBook book(MapConfig{});
   DeltaMaker maker(ServiceConfig{}, book);
-  walls.look_at(2000);
+  walls.look_at(1000);
   auto delta = decoded<planes_t>(maker.make(walls.snapshot()));
   ASSERT_EQ(delta.size(), 1u);
   EXPECT_EQ(delta[0].since_revision, 0);
   ASSERT_EQ(delta[0].n_planes, 1);
   EXPECT_EQ(delta[0].planes[0].plane_class, "other");
-  EXPECT_GT(delta[0].planes[0].area_m2, 2.0);  // 2.13 m x 1.6 m were seen
+  EXPECT_NEAR(delta[0].planes[0].area_m2, 1.07 * 0.8, 0.15);
   EXPECT_TRUE(maker.make(walls.snapshot()).empty());
   const std::int64_t first = delta[0].revision;
   const std::int64_t first_id = delta[0].planes[0].id;
-  walls.look_at(1500, std::numbers::pi / 2);
+  walls.look_at(750, std::numbers::pi / 2);
   delta = decoded<planes_t>(maker.make(walls.snapshot()));
   ASSERT_EQ(delta.size(), 1u);
   EXPECT_EQ(delta[0].since_revision, first);
@@ -223,11 +223,11 @@ TEST(DeltaMaker, ANewEpochIsToldFromItsBeginning) {
   PlaneBook book(MapConfig{});
   DeltaMaker maker(ServiceConfig{}, book);
   Walls first(1);
-  first.look_at(2000);
-  first.look_at(1500, std::numbers::pi / 2);
+  first.look_at(1000);
+  first.look_at(750, std::numbers::pi / 2);
   maker.make(first.snapshot());
   Walls second(2);
-  second.look_at(3000);
+  second.look_at(1100);
   const auto delta = decoded<planes_t>(maker.make(second.snapshot()));
   ASSERT_EQ(delta.size(), 1u);
   EXPECT_EQ(delta[0].epoch, 2);
@@ -240,7 +240,7 @@ TEST(PlaneBook, KnowsClassesWhereGravityIsKnown) {
   config.gravity = {0.0, 1.0, 0.0};  // the camera's y is down: it looks at a wall
   PlaneBook book(config);
   Walls walls;
-  walls.look_at(2000);
+  walls.look_at(1000);
   const auto snapshot = walls.snapshot();
   const auto& planes = book.describe(snapshot);
   ASSERT_EQ(planes.size(), 1u);
@@ -250,9 +250,9 @@ TEST(PlaneBook, KnowsClassesWhereGravityIsKnown) {
 TEST(PlaneBook, MakesABoundaryAnewOnlyForAChangedPlane) {
   PlaneBook book(MapConfig{});
   Walls walls;
-  walls.look_at(2000);
+  walls.look_at(1000);
   const auto outline = book.describe(walls.snapshot()).at(0).outline;
-  walls.look_at(1500, std::numbers::pi / 2);
+  walls.look_at(750, std::numbers::pi / 2);
   const auto& planes = book.describe(walls.snapshot());
   ASSERT_EQ(planes.size(), 2u);
   EXPECT_EQ(planes[0].outline, outline);
@@ -261,7 +261,7 @@ TEST(PlaneBook, MakesABoundaryAnewOnlyForAChangedPlane) {
 
 class RequestAnswererTest : public testing::Test {
  protected:
-  RequestAnswererTest() : book_(config_.map), answerer_(make_config(), book_) { walls_.look_at(2000); }
+  RequestAnswererTest() : book_(config_.map), answerer_(make_config(), book_) { walls_.look_at(1000); }
 
   static ServiceConfig make_config() {
     ServiceConfig config;
@@ -308,9 +308,9 @@ TEST_F(RequestAnswererTest, CellsComeInPagesAndEachCanBeAskedForAgain) {
   const auto snapshot = walls_.snapshot();
   std::size_t dense = 0;
   snapshot->for_each_cell([&](const CellView&) { ++dense; });
-  ASSERT_GT(dense, 200u);
+  ASSERT_GT(dense, 80u);
   const auto reply = ask(request_for(request_t::OPERATION_CELLS), snapshot);
-  ASSERT_GT(reply.end, 2u);
+  ASSERT_GE(reply.end, 2u);
   std::size_t cells = 0;
   for (const auto& page : decoded<reply_t>(*reply.pages)) cells += page.cells.size();
   EXPECT_EQ(cells, dense);
@@ -318,7 +318,7 @@ TEST_F(RequestAnswererTest, CellsComeInPagesAndEachCanBeAskedForAgain) {
   again.epoch = 9;
   again.revision = static_cast<std::int64_t>(snapshot->revision());
   again.page = 1;
-  walls_.look_at(1500, 1.5);  // the map goes on; the kept reply does not
+  walls_.look_at(750, 1.5);  // the map goes on; the kept reply does not
   const auto lost = ask(again, walls_.snapshot());
   ASSERT_EQ(lost.begin, 1u);
   EXPECT_EQ(lost.end, 2u);

@@ -34,7 +34,7 @@ class ServiceTest : public testing::Test {
     ServiceConfig config;
     config.publish.status_period_s = 0.05;
     config.publish.delta_period_s = 0.01;
-    config.publish.page_bytes = 8192;
+    config.publish.page_bytes = 4096;
     config.queue.scans = 1000;
     return config;
   }
@@ -42,7 +42,7 @@ class ServiceTest : public testing::Test {
   void send(const std::string& channel, const Bytes& bytes) {
     ASSERT_EQ(bus_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())), 0);
   }
-  void send_wall(int i, std::uint16_t depth_mm = 2000) {
+  void send_wall(int i, std::uint16_t depth_mm = 1000) {
     const std::int64_t utime = 10 * kSecond + i * 33333;
     send("POSE", encoded(pose_message(utime)));
     send("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, i, depth_mm))));
@@ -106,8 +106,8 @@ TEST_F(ServiceTest, ScansBecomePlanesInDeltas) {
   ASSERT_EQ(planes.size(), 1u);
   const auto& wall = planes.begin()->second;
   EXPECT_NEAR(wall.normal[2], -1.0, 1e-6);
-  EXPECT_NEAR(wall.d, 2.0, 1e-3);
-  EXPECT_NEAR(wall.area_m2, 2.13 * 1.6, 0.4);
+  EXPECT_NEAR(wall.d, 1.0, 1e-3);
+  EXPECT_NEAR(wall.area_m2, 1.07 * 0.8, 0.15);
   EXPECT_EQ(counter("scans.received"), 5);
   EXPECT_EQ(counter("scans.waiting"), 0);
 }
@@ -121,7 +121,8 @@ TEST_F(ServiceTest, SnapshotAndCellsArriveWhole) {
   EXPECT_EQ(snapshot[0].status, reply_t::STATUS_OK) << snapshot[0].error;
   EXPECT_EQ(snapshot[0].epoch, 1234);
   ASSERT_EQ(snapshot[0].n_planes, 1);
-  EXPECT_EQ(snapshot[0].planes[0].point_count, 3 * 4800);
+  EXPECT_GT(snapshot[0].planes[0].point_count, 3 * 4800 * 8 / 10);
+  EXPECT_LE(snapshot[0].planes[0].point_count, 3 * 4800);
   const auto cells = ask(request_message(request_t::OPERATION_CELLS, 42));
   ASSERT_GT(cells.size(), 1u);
   std::size_t count = 0;
@@ -130,7 +131,7 @@ TEST_F(ServiceTest, SnapshotAndCellsArriveWhole) {
     EXPECT_EQ(cells[i].request_id, 42);
     count += cells[i].cells.size();
   }
-  EXPECT_GT(count, 200u);
+  EXPECT_GT(count, 80u);
   auto again = request_message(request_t::OPERATION_CELLS, 43, /*page=*/1);
   again.epoch = cells[1].epoch;
   again.revision = cells[1].revision;
@@ -172,7 +173,7 @@ TEST_F(ServiceTest, StatusSaysWhyNothingIsMappedAndThenHowItGoes) {
   const status_t& status = statuses_.back();
   EXPECT_EQ(status.idle_reason, "");
   EXPECT_EQ(status.plane_count, 1);
-  EXPECT_GT(status.cell_count, 200);
+  EXPECT_GT(status.cell_count, 80);
   EXPECT_GT(status.scan_ms_p50, 0.0);
   EXPECT_EQ(status.last_scan_utime, 10 * kSecond + 3 * 33333);
   std::map<std::string, std::int64_t> counters;

@@ -21,7 +21,7 @@ Bytes encoded(const Message& message) {
 
 /// A depth_scan_t of a small camera (80 x 60 pixels, f = 75 pixels) that looks straight at a wall, with a right
 /// checksum.
-planemap_lcm::depth_scan_t wall_message(std::int64_t utime, std::int32_t seq, std::uint16_t depth_mm = 2000);
+planemap_lcm::depth_scan_t wall_message(std::int64_t utime, std::int32_t seq, std::uint16_t depth_mm = 1000);
 /// The same pixels through zlib.
 planemap_lcm::depth_scan_t zipped(planemap_lcm::depth_scan_t message);
 /// Sets the checksum anew after a change of data.

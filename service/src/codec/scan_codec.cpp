@@ -18,6 +18,7 @@ using planemap_lcm::point_scan_t;
 
 constexpr std::int32_t kMaxImageEdge = 4096;        // pixels; depth_scan_t.lcm
 constexpr std::int32_t kMaxPointValues = 30000000;  // floats; point_scan_t.lcm
+constexpr std::size_t kMaxZlibRatio = 1032;         // deflate packs no denser
 constexpr double kMaxSlope = 100.0;  // x/z of a pixel: 89.4 degrees; keeps points within the grid's integers
 
 tl::unexpected<Rejection> reject(const char* reason, std::string message) {
@@ -129,6 +130,11 @@ Decoded<DecodedScan> decode_depth_scan(WireReader reader, std::size_t message_by
     return reject("size",
                   fmt::format("depth_scan_t: {} bytes of raw data for {} x {} pixels, must be {}", header->data.size(),
                               header->scan.intrinsics.width, header->scan.intrinsics.height, *image_bytes));
+  }
+  if (!is_raw && header->data.size() * kMaxZlibRatio < *image_bytes) {
+    return reject("size",
+                  fmt::format("depth_scan_t: {} bytes of zlib data cannot hold {} x {} pixels", header->data.size(),
+                              header->scan.intrinsics.width, header->scan.intrinsics.height));
   }
   // Checked before the pixels are unpacked: what was damaged on the way is not worth the work.
   if (const auto sum = checksum(header->data); sum != header->crc32) {

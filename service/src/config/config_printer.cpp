@@ -35,13 +35,13 @@ std::string value_text(const std::vector<double>& value) {
 }
 
 std::string limits_text(const FieldInfo& info, const char* of) {
-  if (info.min == info.max) return fmt::format("; {}{}", info.min, of);
-  return fmt::format("; {} to {}{}", info.min, info.max, of);
+  if (info.min == info.max) return fmt::format(" ({}{})", info.min, of);
+  return fmt::format(" ({} to {}{})", info.min, info.max, of);
 }
 template <class T>
 std::string allowed_text(const FieldInfo& info, const T&) {
   if constexpr (std::is_same_v<T, bool>) {
-    return "; true or false";
+    return " (true or false)";
   } else if constexpr (std::is_arithmetic_v<T>) {
     return limits_text(info, "");
   } else if constexpr (std::is_same_v<T, std::string>) {
@@ -88,7 +88,7 @@ class Printer {
     setting(indent, info, value_text(value), allowed_text(info, value));
   }
   void print(const std::string& indent, const FieldInfo& info, const std::vector<MaskBox>& boxes) {
-    setting(indent, info, boxes.empty() ? "[]" : "", "; min_m and max_m each");
+    setting(indent, info, boxes.empty() ? "[]" : "", " (min_m and max_m each)");
     const std::string inner(indent.size(), ' ');
     for (const auto& box : boxes) fields(box, inner + "  - ", inner + "    ");
   }
@@ -101,11 +101,11 @@ class Printer {
       words.emplace_back(choice.first);
       if (choice.second == value) word = choice.first;
     }
-    setting(indent, info, word, fmt::format("; {}", fmt::join(words, ", ")));
+    setting(indent, info, word, fmt::format(" ({})", fmt::join(words, ", ")));
   }
   void print(const std::string& indent, const FieldInfo& info, const std::string& value,
              const std::initializer_list<const char*>& choices) {
-    setting(indent, info, value, fmt::format("; {}", fmt::join(choices, ", ")));
+    setting(indent, info, value, fmt::format(" ({})", fmt::join(choices, ", ")));
   }
 
   std::string& out_;

@@ -47,7 +47,7 @@ std::string ConfigProblems::text() const {
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
   if (word.size() > 64) return {};  // nobody's slip, and the distance costs the product of the lengths
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t best_distance = std::max<std::size_t>(2, (word.size() + 2) / 3) + 1;
   for (const auto& candidate : words) {
     // A unit that was left out (cell_size for cell_size_m) is a slip, too.
     const bool is_stem = word.size() >= 3 && candidate.rfind(word, 0) == 0;

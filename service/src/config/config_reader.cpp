@@ -57,7 +57,11 @@ class NodeReader {
   }
 
  private:
-  using Map = std::map<std::string, YAML::Node>;
+  struct Entry {
+    YAML::Node key;
+    YAML::Node value;
+  };
+  using Entries = std::map<std::string, Entry>;
 
   std::string place(const YAML::Node& node) const {
     return has_lines_ ? fmt::format("{}:{}", name_, node.Mark().line + 1) : name_;
@@ -77,30 +81,34 @@ class NodeReader {
                       fmt::format("must be keys with values, not {}",
                                   node.IsScalar() ? "'" + shown(node.Scalar()) + "'" : kind_of(node)));
     }
-    Map entries = entries_of(node, path);
+    Entries entries = entries_of(node, path);
     std::vector<std::string> known;
     list_fields([&](const char* key, auto& value, const auto&... more) {
       known.emplace_back(key);
       const auto entry = entries.find(key);
       if (entry == entries.end()) return;
-      problems_.note_place(join(path, key), place(entry->second));
-      read_value(entry->second, join(path, key), value, more...);
+      problems_.note_place(join(path, key), place(entry->second.key));
+      if (!entry->second.value.IsNull()) {
+        read_value(entry->second.value, join(path, key), value, more...);
+      } else if (!path.empty()) {  // a section whose keys are all commented out is fine
+        complain(entry->second.key, join(path, key), "has no value");
+      }
       entries.erase(entry);
     });
-    for (const auto& [key, value] : entries) {
+    for (const auto& [key, entry] : entries) {
       const std::string guess = nearest_word(key, known);
-      complain(value, join(path, shown(key)),
+      complain(entry.key, join(path, shown(key)),
                guess.empty() ? fmt::format("unknown key (allowed: {})", fmt::join(known, ", "))
                              : fmt::format("unknown key; did you mean {}?", guess));
     }
   }
 
-  Map entries_of(const YAML::Node& node, const std::string& path) {
-    Map entries;
+  Entries entries_of(const YAML::Node& node, const std::string& path) {
+    Entries entries;
     for (const auto& entry : node) {
       if (!entry.first.IsScalar()) {
         complain(entry.first, path.empty() ? "configuration" : path, "a key must be a word");
-      } else if (!entries.emplace(entry.first.Scalar(), entry.second).second) {
+      } else if (!entries.emplace(entry.first.Scalar(), Entry{entry.first, entry.second}).second) {
         complain(entry.first, join(path, shown(entry.first.Scalar())), "given twice");
       }
     }
@@ -140,7 +148,8 @@ class NodeReader {
   /// An override of one element: the map's only key is its number; the number behind the last one adds an element.
   template <class Struct>
   void read_element(const YAML::Node& node, const std::string& path, std::vector<Struct>& value) {
-    for (const auto& [key, element] : entries_of(node, path)) {
+    for (const auto& [key, entry] : entries_of(node, path)) {
+      const YAML::Node& element = entry.value;
       const auto index = parse_number<std::size_t>(key);
       if (!index || *index > value.size() || *index >= 64) {
         complain(element, join(path, shown(key)), fmt::format("no such entry (allowed: 0 to {})", value.size()));
