@@ -21,13 +21,23 @@ struct Raw {
   std::optional<std::size_t> frames;
   double pose_noise_deg = 0.0;
   bool wall_clock = false;
+  std::string encoding = "zlib";
 };
+
+/// A check without words in the help, where the type's name says enough.
+template <class Number>
+CLI::Validator in_range(Number low, Number high) {
+  return CLI::Range(low, high).description("");
+}
 
 void add_source_options(CLI::App& app, Options& options, Raw& raw) {
   auto* source = app.add_option_group("Source", "where the frames come from: one of");
-  auto* dataset = source->add_option("--dataset", options.dataset,
-                                     "7-Scenes or TUM RGB-D folder; the body of the pose messages is its camera");
+  auto* dataset = source
+                      ->add_option("--dataset", options.dataset,
+                                   "7-Scenes or TUM RGB-D folder; the body of the pose messages is its camera")
+                      ->type_name("FOLDER");
   auto* simulate = source->add_option("--simulate", raw.scene, "a rendered scene whose planes are known: apartment")
+                       ->type_name("SCENE")
                        ->check(CLI::IsMember({"apartment"}));
   source->require_option(1);
 
@@ -35,54 +45,69 @@ void add_source_options(CLI::App& app, Options& options, Raw& raw) {
          "--frames", raw.frames,
          "stop after N frames; a simulation spreads them evenly over one tour through all rooms (default: all; one "
          "tour at true speed)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000'000}));
+      ->type_name("N")
+      ->check(in_range(std::size_t{1}, std::size_t{1'000'000'000}));
   app.add_flag("--loop", options.loop, "begin again at the end, until stopped; utimes go on");
-  app.add_option("--intrinsics", raw.camera, "fx,fy,cx,cy in pixels, instead of the folder's own")->needs(dataset);
+  app.add_option("--intrinsics", raw.camera, "fx,fy,cx,cy in pixels, instead of the folder's own")
+      ->type_name("FX,FY,CX,CY")
+      ->needs(dataset);
   app.add_option("--depth-scale", options.folder.depth_scale_m,
                  "metres per unit of depth (default: 7-Scenes 0.001, TUM 0.0002)")
-      ->check(CLI::Range(1e-9, 1.0))
+      ->type_name("M")
+      ->check(in_range(1e-9, 1.0))
       ->needs(dataset);
   app.add_option("--seed", options.simulation.seed, "of apartment, tour and noise")
+      ->type_name("N")
       ->capture_default_str()
       ->needs(simulate);
-  app.add_option("--truth", options.truth_path, "write the known planes to this file, as planes.json")->needs(simulate);
+  app.add_option("--truth", options.truth_path, "write the known planes to this file, as planes.json")
+      ->type_name("FILE")
+      ->needs(simulate);
   app.add_option("--noise", options.simulation.depth_noise.scale,
                  "times the depth noise of a Kinect; 0: exact depth, nothing lost")
+      ->type_name("FACTOR")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(in_range(0.0, 100.0))
       ->needs(simulate);
   app.add_option("--pose-noise-m", options.simulation.pose_noise.sigma_m, "standard error of positions, each axis")
+      ->type_name("M")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(in_range(0.0, 10.0))
       ->needs(simulate);
   app.add_option("--pose-noise-deg", raw.pose_noise_deg, "standard error of rotations, each axis")
+      ->type_name("DEG")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 90.0))
+      ->check(in_range(0.0, 90.0))
       ->needs(simulate);
   app.add_option("--pose-correlation-s", options.simulation.pose_noise.correlation_s,
                  "time in which pose errors wander; 0: new for each frame")
+      ->type_name("S")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(in_range(0.0, 1e6))
       ->needs(simulate);
 }
 
 void add_output_options(CLI::App& app, Options& options, Raw& raw) {
   app.add_option("--rate", options.feed.rate_hz, "frames a second (default: as recorded; simulation 30)")
-      ->check(CLI::Range(0.001, kMaxRateHz));
+      ->type_name("HZ")
+      ->check(in_range(0.001, kMaxRateHz));
   app.add_option("--pose-rate", options.feed.pose_rate_hz,
                  "poses a second between the frames, interpolated (default: one with each frame)")
-      ->check(CLI::Range(0.001, kMaxRateHz));
-  app.add_option("--encoding", options.feed.encoding, "of the depth images: zlib or raw (default: zlib)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, Encoding>{{"zlib", Encoding::kZlib}, {"raw", Encoding::kRaw}}))
-      ->type_name("zlib|raw");
-  app.add_option("--channel", options.feed.channel, "of the scans")->capture_default_str();
-  app.add_option("--pose-channel", options.feed.pose_channel, "of the poses")->capture_default_str();
+      ->type_name("HZ")
+      ->check(in_range(0.001, kMaxRateHz));
+  app.add_option("--encoding", raw.encoding, "of the depth images")
+      ->type_name("WORD")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zlib", "raw"}));
+  app.add_option("--channel", options.feed.channel, "of the scans")->type_name("NAME")->capture_default_str();
+  app.add_option("--pose-channel", options.feed.pose_channel, "of the poses")->type_name("NAME")->capture_default_str();
   auto* url = app.add_option("-l,--lcm-url", options.lcm_url,
-                             "where to publish (default: $LCM_DEFAULT_URL, or " + std::string(kDefaultUrl) + ")");
+                             "where to publish (default: $LCM_DEFAULT_URL, or " + std::string(kDefaultUrl) + ")")
+                  ->type_name("URL");
   auto* log =
       app.add_option("--log", options.log_path,
-                     "write an LCM event log instead of publishing, as fast as it goes; its times are the frames'");
+                     "write an LCM event log instead of publishing, as fast as it goes; its times are the frames'")
+          ->type_name("FILE");
   log->excludes(url);
   app.add_flag("--wall-clock", raw.wall_clock,
                "stamp a dataset's frames with the present time, as a simulation's are, and not as recorded")
@@ -107,6 +132,7 @@ void complete(Options& options, const Raw& raw) {
     if (!camera) throw CLI::ValidationError("--intrinsics", camera.error().message);
     options.folder.camera = *camera;
   }
+  options.feed.encoding = raw.encoding == "raw" ? Encoding::kRaw : Encoding::kZlib;
   const bool simulated = options.dataset.empty();
   const bool logged = !options.log_path.empty();
   if (logged && options.loop && !raw.frames) {

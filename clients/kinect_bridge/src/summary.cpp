@@ -20,11 +20,11 @@ std::string summary_text(const Summary& summary, const Options& options) {
 
 std::string summary_json(const Summary& summary, const Options& options) {
   const FeedReport& report = summary.report;
-  nlohmann::json json = {{"frames", report.frames},        {"poses", report.poses},
-                         {"bytes", report.bytes},          {"seconds", summary.seconds},
-                         {"lateFrames", report.late},      {"unsentMessages", report.unsent},
-                         {"skipped", summary.skipped},     {"firstUtime", report.first_utime},
-                         {"lastUtime", report.last_utime}, {"stopped", report.stopped}};
+  nlohmann::ordered_json json = {{"frames", report.frames},        {"poses", report.poses},
+                                 {"bytes", report.bytes},          {"seconds", summary.seconds},
+                                 {"lateFrames", report.late},      {"unsentMessages", report.unsent},
+                                 {"skipped", summary.skipped},     {"firstUtime", report.first_utime},
+                                 {"lastUtime", report.last_utime}, {"stopped", report.stopped}};
   if (options.log_path.empty()) {
     json["lcmUrl"] = options.lcm_url;
   } else {

@@ -6,18 +6,20 @@
 namespace planemap::simulation {
 namespace {
 
-nlohmann::json to_json(const Eigen::Vector3d& v) {
+using Json = nlohmann::ordered_json;  // in the order of the schema
+
+Json to_json(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-nlohmann::json to_json(const Surface& surface) {
+Json to_json(const Surface& surface) {
   const double total_m2 = area_m2(surface);
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
-  nlohmann::json polygons = nlohmann::json::array();
+  Json polygons = Json::array();
   for (const ConvexPiece& piece_m : surface.pieces_m) {
-    nlohmann::json ring = nlohmann::json::array();
+    Json ring = Json::array();
     for (const Eigen::Vector3d& corner_m : piece_m) ring.push_back(to_json(corner_m));
-    polygons.push_back({{"outer", std::move(ring)}, {"holes", nlohmann::json::array()}});
+    polygons.push_back({{"outer", std::move(ring)}, {"holes", Json::array()}});
     for (std::size_t i = 1; i + 1 < piece_m.size(); ++i) {
       const ConvexPiece triangle_m = {piece_m[0], piece_m[i], piece_m[i + 1]};
       centroid_m += area_m2(triangle_m) / total_m2 * (triangle_m[0] + triangle_m[1] + triangle_m[2]) / 3.0;
@@ -42,10 +44,14 @@ nlohmann::json to_json(const Surface& surface) {
 }  // namespace
 
 std::string truth_json(std::span<const Surface> surfaces) {
-  nlohmann::json planes = nlohmann::json::array();
-  for (const Surface& surface : surfaces) planes.push_back(to_json(surface));
-  const nlohmann::json document = {{"frame", "world"}, {"epoch", 0}, {"revision", 0}, {"planes", std::move(planes)}};
-  return document.dump(1) + "\n";
+  // One plane a line: to be read by people too.
+  std::string text = R"({"frame":"world","epoch":0,"revision":0,"planes":[)";
+  const char* separator = "\n";
+  for (const Surface& surface : surfaces) {
+    text += separator + to_json(surface).dump();
+    separator = ",\n";
+  }
+  return text + "\n]}\n";
 }
 
 Expected<void> write_truth_file(std::span<const Surface> surfaces, const std::filesystem::path& path) {
