@@ -332,7 +332,8 @@ PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
   PlaneRecord record;
   record.id = id_of(slot);
   record.plane = plane.fit.plane;
-  record.covariance = covariance_of(plane.fit, plane.statistics.weight(), config_.offset_floor_m);
+  // The weight that the fit was made from: a plane whose core cells have all left stands as it was last fitted.
+  record.covariance = covariance_of(plane.fit, plane.fit.weight, config_.offset_floor_m);
   record.centroid_m = plane.fit.centroid_m;
   record.cell_count = static_cast<std::uint32_t>(plane.statistics.cell_count());
   record.point_count = static_cast<std::uint64_t>(plane.statistics.point_count());

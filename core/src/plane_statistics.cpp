@@ -65,7 +65,8 @@ std::optional<PlaneFit> PlaneStatistics::fit_pooled() const {
                   spreads(1),
                   spreads(2),
                   std::max(spreads(0), 0.0),
-                  normal_deviation_rad()};
+                  normal_deviation_rad(),
+                  pooled_.weight};
 }
 
 std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
@@ -89,7 +90,8 @@ std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
                   spread_1,
                   spread_2,
                   normal.dot(scatter * normal),
-                  normal_deviation_rad()};
+                  normal_deviation_rad(),
+                  pooled_.weight};
 }
 
 double squared_chord(double angle_rad) {

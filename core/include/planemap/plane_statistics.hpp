@@ -18,6 +18,7 @@ struct PlaneFit {
   double spread_2_m2 = 0.0;                              ///< and along tangent_2
   double residual_m2 = 0.0;                              ///< and along the normal
   double deviation_rad = 0.0;                            ///< of the normal
+  double weight = 0.0;                                   ///< of the evidence: the sum of 1 / sigma^2, 1/m2
 
   /// Length of a uniform strip with the greatest spread, metres.
   double extent_m() const;
