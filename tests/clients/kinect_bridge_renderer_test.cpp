@@ -104,27 +104,33 @@ double lost_share(const std::vector<std::uint16_t>& depth) {
 TEST(KinectSensor, NoiseGrowsWithTheSquareOfDepthAsModelled) {
   const KinectSensor sensor({}, kKinect);
   for (const double centre_m : {1.0, 2.0, 4.0}) {
-    // Depths 2 % about it: at a single one, rounding to steps and millimetres is no noise but a shift.
+    // Disparities over 32 whole steps: at a single one, rounding to steps and millimetres is no noise but a shift.
+    constexpr double kDisparityPxM = 585.0 * 0.075;
     RenderedImage image = flat_image(0.0F, 0.0);
     for (std::size_t at = 0; at < image.depth_m.size(); ++at) {
-      image.depth_m[at] = static_cast<float>(centre_m * (0.99 + 0.02 * static_cast<double>(at % 9973) / 9973.0));
+      const double offset_px = 4.0 * (static_cast<double>(at % 9973) / 9973.0 - 0.5);
+      image.depth_m[at] = static_cast<float>(kDisparityPxM / (kDisparityPxM / centre_m + offset_px));
     }
-    const auto depth = sensor.measure(image, 5);
-    double sum = 0.0;  // of the errors in standard deviations of the model
-    double squares = 0.0;
-    double bias = 0.0;
-    for (std::size_t at = 0; at < depth.size(); ++at) {
-      const double z_m = static_cast<double>(image.depth_m[at]);
-      const double step_m = z_m * z_m * 0.125 / (585.0 * 0.075);
-      const double sigma_m = std::sqrt(std::pow(1.425e-3 * z_m * z_m, 2) + step_m * step_m / 12.0 + 1e-6 / 12.0);
-      const double error = (1e-3 * depth[at] - z_m) / sigma_m;
-      sum += error;
-      squares += error * error;
-      bias += sigma_m / z_m;  // depth from a disparity with errors is too large by sigma^2 / z
+    double squares = 0.0;  // of the errors in standard deviations of the model
+    double sum_m = 0.0;    // of the errors
+    double bias_m = 0.0;   // expected: depth from a disparity with errors is too large by sigma^2 / z
+    double count = 0.0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const auto depth = sensor.measure(image, seed);
+      for (std::size_t at = 0; at < depth.size(); ++at) {
+        const double z_m = static_cast<double>(image.depth_m[at]);
+        const double step_m = z_m * z_m * 0.125 / kDisparityPxM;
+        const double sigma_m = std::sqrt(std::pow(1.425e-3 * z_m * z_m, 2) + step_m * step_m / 12.0 + 1e-6 / 12.0);
+        const double error_m = 1e-3 * depth[at] - z_m;
+        squares += std::pow(error_m / sigma_m, 2);
+        sum_m += error_m;
+        bias_m += sigma_m * sigma_m / z_m;
+      }
+      count += static_cast<double>(depth.size());
     }
-    const auto count = static_cast<double>(depth.size());
     EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.01) << centre_m;
-    EXPECT_NEAR(sum / count, bias / count, 0.01) << centre_m;
+    // Rounded to millimetres, 32 steps are off by 0.05 mm on average.
+    EXPECT_NEAR(sum_m / count, bias_m / count, 1.2e-4) << centre_m;
   }
 }
 
