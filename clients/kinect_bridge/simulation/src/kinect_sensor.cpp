@@ -92,6 +92,7 @@ std::uint16_t KinectSensor::to_millimetres(double disparity_px) const {
 
 std::vector<std::uint16_t> KinectSensor::measure(const RenderedImage& image, std::uint64_t seed) const {
   std::vector<std::uint16_t> depth(image.depth_m.size(), kNoReturn);
+  const std::uint64_t start = mix(seed);  // successive seeds start far from each other
   const bool loses_returns = config_.scale > 0.0;
   const bool quantised = !millimetres_of_step_.empty();
   const auto grazing_cos = static_cast<float>(std::cos(config_.grazing_begin_rad));
@@ -103,7 +104,7 @@ std::vector<std::uint16_t> KinectSensor::measure(const RenderedImage& image, std
     for (int u = 0; u < intrinsics_.width; ++u) {
       const std::size_t at = static_cast<std::size_t>(v) * intrinsics_.width + u;
       if (image.surface[at] == kNoSurface) continue;
-      const std::uint64_t bits = mix(seed + at);  // a number for each pixel: the order does not matter
+      const std::uint64_t bits = mix(start + at);  // a number for each pixel: the order does not matter
       if (loses_returns) {
         const float cos_incidence = image.cos_incidence[at];
         if (cos_incidence < grazing_cos && share_of(bits, 1) < lost_share(cos_incidence)) continue;
