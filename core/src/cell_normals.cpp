@@ -45,7 +45,6 @@ void NormalEstimator::gather(const UncertainGrid& grid, CellRef ref) {
 }
 
 std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const UncertainGrid& grid, CellRef ref) const {
-  if (neighbourhood_.size() < 3) return std::nullopt;
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   const bool pooled = config_.fit == NormalFit::kPooled;
   Moments sum;
@@ -69,6 +68,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const Uncertai
           solver.eigenvectors().col(0),
           solver.eigenvectors().col(1),
           solver.eigenvectors().col(2),
+          solver.eigenvalues()(1),
           std::max(solver.eigenvalues()(0), 0.0),
           0.0};
   if (fit.normal.dot(grid.cell(ref).sums.view.cast<double>()) < 0.0) fit.normal = -fit.normal;
@@ -86,15 +86,44 @@ bool NormalEstimator::drop_other_side(const UncertainGrid& grid, CellRef ref, co
   return dropped;
 }
 
-std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, CellRef ref) {
+bool NormalEstimator::is_flat(const Fit& fit) const {
+  if (config_.flatness_sigmas <= 0.0) return true;
+  return fit.variance_m2 <= allowed_variance_m2(fit.expected_variance_m2);
+}
+
+double NormalEstimator::allowed_variance_m2(double expected_m2) const {
+  return config_.flatness_sigmas * config_.flatness_sigmas * expected_m2 +
+         config_.flatness_floor_m * config_.flatness_floor_m;
+}
+
+std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const UncertainGrid& grid, CellRef ref) {
+  neighbourhood_.assign(1, ref);
+  const std::optional<Fit> own = fit_gathered(grid, ref);
+  // The own points must span a patch: a strip along an edge turns freely about it.
+  const double least_spread_m = 0.15 * grid.cell_size_m();
+  if (!own || !is_flat(*own) || own->spread_1_m2 < least_spread_m * least_spread_m) return std::nullopt;
+  const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   gather(grid, ref);
-  std::optional<Fit> fit = fit_gathered(grid, ref);
-  if (fit && config_.view_side && drop_other_side(grid, ref, fit->normal)) fit = fit_gathered(grid, ref);
-  if (!fit) return std::nullopt;
-  if (config_.flatness_sigmas > 0.0) {
-    const double allowed = config_.flatness_sigmas * config_.flatness_sigmas * fit->expected_variance_m2 +
-                           config_.flatness_floor_m * config_.flatness_floor_m;
-    if (fit->variance_m2 > allowed) return std::nullopt;
+  const auto elsewhere = [&](CellRef other) {
+    const CellSums& sums = grid.cell(other).sums;
+    const Eigen::Vector3d shift = grid.geometric_centre_m(other) - origin;
+    const double d_m = own->normal.dot(shift - own->centroid_m);
+    return sums.points.mean_square_distance(own->normal, d_m) > allowed_variance_m2(sums.point_variance(own->normal)) ||
+           own->normal.dot(sums.view.cast<double>()) < 0.0;
+  };
+  neighbourhood_.erase(std::remove_if(neighbourhood_.begin(), neighbourhood_.end(), elsewhere), neighbourhood_.end());
+  const std::optional<Fit> together = fit_gathered(grid, ref);
+  if (together && is_flat(*together)) return together;
+  neighbourhood_.assign(1, ref);
+  return own;
+}
+
+double NormalEstimator::deviation_rad(const UncertainGrid& grid, CellRef ref, const Fit& fit) {
+  if (neighbourhood_.size() < 4) {
+    // Too few centres to perturb: what the points' own errors make of the tilt.
+    double points = 0.0;
+    for (const CellRef other : neighbourhood_) points += grid.cell(other).sums.count();
+    return std::atan(std::sqrt(fit.expected_variance_m2 / (points * fit.spread_1_m2)));
   }
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   centres_.clear();
@@ -103,9 +132,19 @@ std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, C
     const double n = sums.count();
     const double share = config_.centre_error == CentreError::kMean ? 1.0 / (n * n) : 1.0 / n;
     centres_.push_back(
-        {sums.points.mean() + grid.geometric_centre_m(other) - origin - fit->centroid_m, sums.error_m2 * share});
+        {sums.points.mean() + grid.geometric_centre_m(other) - origin - fit.centroid_m, sums.error_m2 * share});
   }
-  return UncertainNormal{fit->normal, min_max_deviation_rad(centres_, fit->normal, fit->tangent_1, fit->tangent_2)};
+  return min_max_deviation_rad(centres_, fit.normal, fit.tangent_1, fit.tangent_2);
+}
+
+std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, CellRef ref) {
+  gather(grid, ref);
+  std::optional<Fit> fit = fit_gathered(grid, ref);
+  if (fit && config_.view_side && drop_other_side(grid, ref, fit->normal)) fit = fit_gathered(grid, ref);
+  // Beside an edge the neighbourhood holds two surfaces, and the cell may still lie on one of them.
+  if (fit && !is_flat(*fit)) fit = fit_own_surface(grid, ref);
+  if (!fit) return std::nullopt;
+  return UncertainNormal{fit->normal, deviation_rad(grid, ref, *fit)};
 }
 
 void NormalEstimator::refresh(UncertainGrid& grid, CellRef ref) {

@@ -39,8 +39,9 @@ constexpr int kClosing = kStepsPerCell / 2;
 constexpr int kInset = kStepsPerCell / 4;
 
 constexpr double kSimplifyCells = 0.25;
-// Steps of a staircase are up to a cell high: with this tolerance its line remains.
-constexpr double kDirectionCells = 1.0;
+// Steps of a staircase are up to a cell high, or a little more where a cell is missing: with this tolerance its line
+// remains.
+constexpr double kDirectionCells = 1.5;
 constexpr double kStaircaseRad = 0.02;  // below it a border of a few metres has but one or two steps
 
 /// The closed and inset union of the cells' squares.
@@ -93,8 +94,8 @@ GeoPolygon simplified(const GeoPolygon& polygon, double tolerance_m) {
   return polygon;
 }
 
-/// The direction, modulo a right angle, along which most of the border runs: argument of the sum of the sides' lengths
-/// times exp(4i angle), radians, in -pi/4 .. pi/4.
+/// The direction, modulo a right angle, along which most of the border runs: argument of the sum of the sides' squared
+/// lengths times exp(4i angle), radians, in -pi/4 .. pi/4. Squared, since one long side says more than many teeth.
 double main_direction_rad(const std::vector<GeoPolygon>& polygons, double tolerance_m) {
   std::complex<double> sum;
   for (const GeoPolygon& polygon : polygons) {
@@ -102,7 +103,7 @@ double main_direction_rad(const std::vector<GeoPolygon>& polygons, double tolera
     bg::simplify(polygon.outer(), ring, tolerance_m);
     for (std::size_t i = 1; i < ring.size(); ++i) {
       const std::complex<double> side(ring[i].x() - ring[i - 1].x(), ring[i].y() - ring[i - 1].y());
-      sum += std::polar(std::abs(side), 4.0 * std::arg(side));
+      sum += std::polar(std::norm(side), 4.0 * std::arg(side));
     }
   }
   return std::arg(sum) / 4.0;

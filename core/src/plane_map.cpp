@@ -11,6 +11,14 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
+/// Small planes are weighed anew with each scan that touches them: their fit still moves, and with it who shapes them.
+/// That bounds the work of a scan; in larger planes a cell is weighed when it is touched.
+constexpr std::size_t kReweighedCells = 256;
+
+/// A plane looks for pieces across a gap when it has grown by a tenth, and at the latest after so many scans that touch
+/// it: its fit gets better without growth.
+constexpr int kBridgingScans = 10;
+
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
@@ -23,12 +31,14 @@ PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes)
     : grid_config_(grid),
       config_(planes),
       max_angle_rad_(planes.normal_angle_deg * kRadPerDeg),
+      core_cosine_(std::cos(planes.core_angle_deg * kRadPerDeg)),
       states_(1),
       coarse_(0.5 * std::max(planes.bridge_gap_m, 4.0 * grid.cell_size_m)) {}
 
-void PlaneMap::mark_dirty(PlaneSlot slot) {
-  if (std::exchange(state(slot).dirty, true)) return;
-  dirty_.push_back(slot);
+void PlaneMap::mark_changed(PlaneSlot slot) {
+  State& plane = state(slot);
+  if (!std::exchange(plane.touched, true)) touched_.push_back(slot);
+  if (!std::exchange(plane.dirty, true)) dirty_.push_back(slot);
 }
 
 void PlaneMap::refit(PlaneSlot slot) {
@@ -43,14 +53,37 @@ double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
 
 float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
   const Cell& cell = grid.cell(ref);
+  const Eigen::Vector3d& normal = fit.plane.normal();
+  const double weight = point_weight(cell.sums, normal);
+  if (!(config_.core_sigmas > 0.0)) return static_cast<float>(weight);
+  // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
+  // scatter about the plane by more than their errors, and its normal turns away.
   const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
-  // A cell at an edge also holds points of another surface: it belongs to the plane but does not shape it.
-  const double spread_m2 = cell.sums.points.mean_square_distance(fit.plane.normal(), d_m);
-  const double expected_m2 = cell.sums.point_variance(fit.plane.normal());
-  const double allowed_m2 =
-      config_.core_sigmas * config_.core_sigmas * expected_m2 + config_.core_floor_m * config_.core_floor_m;
-  if (config_.core_sigmas > 0.0 && spread_m2 > allowed_m2) return 0.0F;
-  return static_cast<float>(point_weight(cell.sums, fit.plane.normal()));
+  const double expected_m2 = cell.sums.point_variance(normal) + config_.core_floor_m * config_.core_floor_m;
+  const double ratio = cell.sums.points.mean_square_distance(normal, d_m) / expected_m2;
+  if (ratio > config_.core_sigmas * config_.core_sigmas) return 0.0F;
+  if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < core_cosine_) return 0.0F;
+  const double excess = std::max(1.0, ratio);
+  return static_cast<float>(weight / (excess * excess));
+}
+
+void PlaneMap::reweigh(UncertainGrid& grid, PlaneSlot slot) {
+  State& plane = state(slot);
+  const auto left = [&](CellRef ref) { return grid.cell(ref).plane != slot; };
+  plane.cells.erase(std::remove_if(plane.cells.begin(), plane.cells.end(), left), plane.cells.end());
+  sort_unique(plane.cells);
+  if (plane.cells.empty() || plane.cells.size() > kReweighedCells || !(config_.core_sigmas > 0.0)) return;
+  // Where no cell is good enough to shape the plane, they all do.
+  const bool any_core = std::any_of(plane.cells.begin(), plane.cells.end(),
+                                    [&](CellRef ref) { return member_weight(grid, ref, plane.fit) > 0.0F; });
+  PlaneStatistics fresh(grid.geometric_centre_m(plane.cells.front()));
+  for (const CellRef ref : plane.cells) {
+    Cell& cell = grid.writable(ref);
+    cell.plane_weight = any_core ? member_weight(grid, ref, plane.fit)
+                                 : static_cast<float>(point_weight(cell.sums, plane.fit.plane.normal()));
+    fresh.add(cell, grid.geometric_centre_m(ref));
+  }
+  plane.statistics = fresh;
 }
 
 void PlaneMap::join(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
@@ -61,7 +94,7 @@ void PlaneMap::join(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
   state(slot).statistics.add(cell, centre_m);
   state(slot).cells.push_back(ref);
   coarse_.add(centre_m, slot);
-  mark_dirty(slot);
+  mark_changed(slot);
 }
 
 void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
@@ -69,7 +102,7 @@ void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
   const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
   state(cell.plane).statistics.remove(cell, centre_m);
   coarse_.remove(centre_m, cell.plane);
-  mark_dirty(cell.plane);
+  mark_changed(cell.plane);
   cell.plane = kNoSlot;
 }
 
@@ -84,7 +117,7 @@ void PlaneMap::attach(UncertainGrid& grid, CellRef ref) {
   State& plane = state(cell.plane);
   cell.plane_weight = member_weight(grid, ref, plane.fit);
   plane.statistics.add(cell, grid.geometric_centre_m(ref));
-  mark_dirty(cell.plane);
+  mark_changed(cell.plane);
   if (!config_.offset_test) return;
   const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
   const bool side = !config_.view_side || plane.fit.plane.normal().dot(cell.sums.view.cast<double>()) > 0.0;
@@ -171,7 +204,7 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
   removed_.push_back({id_of(gone), id_of(survivor), 0});
   states_[gone].reset();
   refit(survivor);
-  mark_dirty(survivor);
+  mark_changed(survivor);
   return survivor;
 }
 
@@ -181,6 +214,8 @@ void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t 
     if (grid.cell(ref).plane == kNoSlot) free.push_back(ref);
   }
   if (static_cast<double>(free.size()) < config_.min_cells) return;
+  // A strip of hardly more than one cell's width leans to whatever is beside it.
+  if (local.fit.width_m() < config_.min_width_cells * grid.cell_size_m()) return;
   const auto slot = static_cast<PlaneSlot>(states_.size());
   states_.push_back(std::make_unique<State>(grid.geometric_centre_m(local.cells.front())));
   State& plane = state(slot);
@@ -212,15 +247,19 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
 GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> local,
                              std::span<const CellChange> changes, std::int64_t utime) {
   GlobalReport report;
-  for (const PlaneSlot slot : dirty_) {
-    if (!states_[slot]) continue;
-    refit(slot);
-    state(slot).last_seen_utime = std::max(state(slot).last_seen_utime, utime);
-  }
   for (const LocalPlane& plane : local) merge_local(grid, plane, utime, report);
   if (config_.adoption) adopt(grid, changes);
   if (config_.bridge_gap_m > 0.0) bridge(grid, report);
   dissolve_small(grid, report);
+  for (const PlaneSlot slot : touched_) {
+    if (!states_[slot]) continue;
+    State& plane = state(slot);
+    plane.touched = false;
+    plane.last_seen_utime = std::max(plane.last_seen_utime, utime);
+    reweigh(grid, slot);
+    refit(slot);
+  }
+  touched_.clear();
   return report;
 }
 
@@ -230,6 +269,8 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const
   const Cell& cell = grid.cell(ref);
   const Eigen::Vector3d centre_m = grid.virtual_centre_m(ref);
   const double own_cells = cell.plane == kNoSlot ? 0.0 : static_cast<double>(state(cell.plane).statistics.cell_count());
+  // Near an edge a normal may be wrong by 25 degrees, but not by a right angle.
+  constexpr double kAdoptingCosine = 0.7;
   PlaneSlot best = kNoSlot;
   double best_distance_m = std::numeric_limits<double>::infinity();
   grid.for_each_neighbour(ref, 1, [&](CellRef other) {
@@ -238,6 +279,7 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const
     const State& plane = state(slot);
     const Eigen::Vector3d& normal = plane.fit.plane.normal();
     if (config_.view_side && normal.dot(cell.sums.view.cast<double>()) <= 0.0) return;
+    if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < kAdoptingCosine) return;
     const double distance_m = std::abs(plane.fit.plane.signed_distance_m(centre_m));
     if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) return;
     if (distance_m > config_.cell_offset_m || cell.plane != kNoSlot) {
@@ -294,15 +336,17 @@ PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) co
 }
 
 void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
-  const std::vector<PlaneSlot> candidates = dirty_;
+  const std::vector<PlaneSlot> candidates = touched_;
   for (PlaneSlot slot : candidates) {
     while (states_[slot]) {
       State& plane = state(slot);
       const std::size_t cells = plane.statistics.cell_count();
-      if (static_cast<double>(cells) < 1.1 * static_cast<double>(plane.cells_when_bridged)) break;
+      const bool grown = static_cast<double>(cells) >= 1.1 * static_cast<double>(plane.cells_when_bridged);
+      if (!grown && ++plane.scans_since_bridged < kBridgingScans) break;
       const PlaneSlot partner = bridge_partner(grid, slot);
       if (partner == kNoSlot) {
         plane.cells_when_bridged = cells;
+        plane.scans_since_bridged = 0;
         break;
       }
       slot = merge_planes(grid, slot, partner);
@@ -312,7 +356,7 @@ void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
 }
 
 void PlaneMap::dissolve_small(UncertainGrid& grid, GlobalReport& report) {
-  const std::vector<PlaneSlot> candidates = dirty_;
+  const std::vector<PlaneSlot> candidates = touched_;
   for (const PlaneSlot slot : candidates) {
     if (!states_[slot] || 3 * state(slot).statistics.cell_count() >= static_cast<std::size_t>(config_.min_cells))
       continue;

@@ -6,6 +6,10 @@
 
 namespace planemap {
 
+double PlaneFit::width_m() const {
+  return std::sqrt(12.0 * std::max(spread_1_m2, 0.0));
+}
+
 double PlaneFit::extent_m() const {
   return std::sqrt(12.0 * std::max(spread_2_m2, 0.0));
 }
@@ -83,15 +87,9 @@ std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
     std::swap(t1, t2);
     std::swap(spread_1, spread_2);
   }
-  return PlaneFit{Plane::through(centroid, normal),
-                  centroid,
-                  t1,
-                  t2,
-                  spread_1,
-                  spread_2,
-                  normal.dot(scatter * normal),
-                  normal_deviation_rad(),
-                  pooled_.weight};
+  return PlaneFit{
+      Plane::through(centroid, normal), centroid,      t1, t2, spread_1, spread_2, normal.dot(scatter * normal),
+      normal_deviation_rad(),           pooled_.weight};
 }
 
 double squared_chord(double angle_rad) {

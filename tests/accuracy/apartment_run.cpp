@@ -19,9 +19,8 @@ Run run_apartment(const RunConfig& config) {
   scene.pose_noise.correlation_s = config.pose_correlation_s;
   simulation::SimulatedSource source(scene);
 
-  const MapperConfig mapping = preset(config.preset);
-  Mapper mapper(mapping, /*epoch=*/1);
-  SeenSurfaces seen(source.truth(), mapping.sensor.max_range_m);
+  Mapper mapper(config.mapping, /*epoch=*/1);
+  SeenSurfaces seen(source.truth(), config.mapping.sensor.max_range_m);
   std::chrono::steady_clock::duration spent{};
   std::size_t scans = 0;
   while (auto frame = source.next()) {

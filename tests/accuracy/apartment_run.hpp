@@ -13,7 +13,7 @@ namespace planemap::accuracy {
 struct RunConfig {
   std::uint64_t seed = 1;
   std::size_t frames = 300;
-  Preset preset = Preset::kBest;
+  MapperConfig mapping = preset(Preset::kBest);
   double noise_scale = 1.0;
   double pose_sigma_m = 0.0;
   double pose_sigma_deg = 0.0;

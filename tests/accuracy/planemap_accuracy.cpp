@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apartment_run.hpp"
+#include "config/service_config.hpp"
 
 namespace {
 
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
   RunConfig config;
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<std::string> presets = {"best", "paper"};
+  std::vector<std::string> overrides;
   bool json = false;
   bool surfaces = false;
   app.add_option("--seeds", seeds, "apartments, each from its seed")->delimiter(',')->capture_default_str();
@@ -83,6 +85,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember({"best", "paper"}))
       ->capture_default_str();
+  app.add_option("--set", overrides, "any setting, as section.key=value");
   app.add_option("--frames", config.frames, "frames of one tour")->check(CLI::Range(1, 1000000))->capture_default_str();
   app.add_option("--noise", config.noise_scale, "times the Kinect's own noise")->capture_default_str();
   app.add_option("--pose-noise-m", config.pose_sigma_m, "standard deviation of the poses' position")
@@ -97,7 +100,12 @@ int main(int argc, char** argv) {
   try {
     nlohmann::json all = nlohmann::json::object();
     for (const std::string& preset : presets) {
-      config.preset = preset == "paper" ? planemap::Preset::kPaper : planemap::Preset::kBest;
+      const auto settings = planemap::service::load_config({preset, "", overrides});
+      if (!settings) {
+        std::fprintf(stderr, "planemap-accuracy: %s\n", settings.error().message.c_str());
+        return 2;
+      }
+      config.mapping = settings->mapper;
       if (!json) {
         std::printf("%s\n  %-14s %7s %16s %5s %5s %6s %5s  %8s  %13s  %13s  %8s  %6s\n", preset.c_str(), "scene",
                     "planes", "correct", "over", "under", "missed", "noise", "labelled", "normal deg", "offset mm",

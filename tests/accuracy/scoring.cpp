@@ -16,20 +16,24 @@ constexpr double kPatch_m2 = SeenSurfaces::kPitch_m * SeenSurfaces::kPitch_m;
 /// Cells, found by place.
 class CellFinder {
  public:
-  explicit CellFinder(const MapSnapshot& map) : size_m_(map.cell_size_m()) {
+  explicit CellFinder(const MapSnapshot& map) : map_(&map), size_m_(map.cell_size_m()) {
     map.for_each_cell([&](const CellView& cell) { cells_[key_of(cell.centre_m)].push_back(cell); });
   }
 
-  /// The cell whose virtual centre is nearest, at most 1.5 cells away; nullptr: none.
-  const CellView* nearest(const Eigen::Vector3d& p) const {
-    const CellView* best = nullptr;
-    double best_m2 = 2.25 * size_m_ * size_m_;
+  /// The plane that a piece of surface belongs to: of those that own a cell at most 1.5 cells away and face the same
+  /// way within 45 degrees, the one that passes nearest to it, as a reader of the planes would tell. kNoPlane: there is
+  /// none.
+  PlaneId plane_at(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
+    const double reach_m2 = 2.25 * size_m_ * size_m_;
+    PlaneId best = kNoPlane;
+    double best_m = size_m_;
     for_each_near(p, [&](const CellView& cell) {
-      const double d_m2 = (cell.centre_m - p).squaredNorm();
-      if (d_m2 < best_m2) {
-        best_m2 = d_m2;
-        best = &cell;
-      }
+      if (cell.plane_id == kNoPlane || cell.plane_id == best || (cell.centre_m - p).squaredNorm() > reach_m2) return;
+      const Plane& plane = map_->find(cell.plane_id)->plane;
+      const double distance_m = std::abs(plane.signed_distance_m(p));
+      if (distance_m >= best_m || plane.normal().dot(normal) < std::numbers::sqrt2 / 2.0) return;
+      best_m = distance_m;
+      best = cell.plane_id;
     });
     return best;
   }
@@ -54,6 +58,7 @@ class CellFinder {
     }
   }
 
+  const MapSnapshot* map_;
   double size_m_;
   std::map<Key, std::vector<CellView>> cells_;
 };
@@ -88,10 +93,10 @@ Table tabulate(const MapSnapshot& map, const SeenSurfaces& seen) {
     table.seen_m2[patch.surface] += kPatch_m2;
     const Eigen::Array3i i = (patch.centre_m.array() / size_m).floor().cast<int>();
     near_surface[{i.x(), i.y(), i.z()}] = true;
-    const CellView* cell = cells.nearest(patch.centre_m);
-    if (cell == nullptr || cell->plane_id == kNoPlane) continue;
-    table.overlap_m2[patch.surface][cell->plane_id] += kPatch_m2;
-    table.plane_m2[cell->plane_id] += kPatch_m2;
+    const PlaneId plane = cells.plane_at(patch.centre_m, seen.surfaces()[patch.surface].plane.normal());
+    if (plane == kNoPlane) continue;
+    table.overlap_m2[patch.surface][plane] += kPatch_m2;
+    table.plane_m2[plane] += kPatch_m2;
   }
   // Cells that hang in the air weigh against their plane.
   map.for_each_cell([&](const CellView& cell) {

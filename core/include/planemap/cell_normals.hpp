@@ -47,12 +47,17 @@ class NormalEstimator {
     Eigen::Vector3d normal;
     Eigen::Vector3d tangent_1;
     Eigen::Vector3d tangent_2;
+    double spread_1_m2;  ///< variance of the evidence along tangent_1, the lesser one
     double variance_m2;  ///< of the evidence about the plane
     double expected_variance_m2;
   };
 
   void gather(const UncertainGrid& grid, CellRef ref);
   std::optional<Fit> fit_gathered(const UncertainGrid& grid, CellRef ref) const;
+  std::optional<Fit> fit_own_surface(const UncertainGrid& grid, CellRef ref);
+  bool is_flat(const Fit& fit) const;
+  double allowed_variance_m2(double expected_m2) const;
+  double deviation_rad(const UncertainGrid& grid, CellRef ref, const Fit& fit);
   bool drop_other_side(const UncertainGrid& grid, CellRef ref, const Eigen::Vector3d& normal);
 
   NormalConfig config_;

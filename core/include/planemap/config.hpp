@@ -105,6 +105,7 @@ void visit_fields(Config& c, Visit&& visit) {
 struct PlaneConfig {
   double normal_angle_deg = 15.0;
   int min_cells = 12;
+  double min_width_cells = 1.6;
   bool best_seeds_first = true;
   bool pooled_refit = true;
   bool offset_test = true;
@@ -116,8 +117,9 @@ struct PlaneConfig {
   double bridge_angle_deg = 1.5;
   double slab_sigmas = 3.0;
   double slab_ratio = 4.0;
-  double core_sigmas = 2.0;
-  double core_floor_m = 0.003;
+  double core_sigmas = 5.0;
+  double core_floor_m = 0.002;
+  double core_angle_deg = 8.0;
   double offset_floor_m = 1e-4;
 };
 
@@ -126,6 +128,8 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"normal_angle_deg", "normals are similar up to this angle (the paper's phi)", 0.1, 90.0},
         c.normal_angle_deg);
   visit(FieldInfo{"min_cells", "a local plane of fewer cells starts no global one", 1, 1e6}, c.min_cells);
+  visit(FieldInfo{"min_width_cells", "a local plane narrower than this many cells starts no global one", 0.0, 1000.0},
+        c.min_width_cells);
   visit(FieldInfo{"best_seeds_first", "grow local planes from the cells with the surest normals first"},
         c.best_seeds_first);
   visit(FieldInfo{"pooled_refit", "fit planes to the second moments of their cells, not to the mean of their normals"},
@@ -149,7 +153,9 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"core_sigmas", "cells whose points scatter about their plane by more sigma don't shape it; 0: all do",
                   0.0, 100.0},
         c.core_sigmas);
-  visit(FieldInfo{"core_floor_m", "scatter that is always allowed", 0.0, 1.0}, c.core_floor_m);
+  visit(FieldInfo{"core_floor_m", "scatter that is expected beside the sensor's", 0.0, 1.0}, c.core_floor_m);
+  visit(FieldInfo{"core_angle_deg", "cells whose normal turns away by more don't shape their plane either", 0.0, 90.0},
+        c.core_angle_deg);
   visit(FieldInfo{"offset_floor_m", "no plane is known better than this", 0.0, 1.0}, c.offset_floor_m);
 }
 

@@ -13,7 +13,9 @@ struct PlaneBasis {
   Eigen::Vector3d axis_u;
   Eigen::Vector3d axis_v;
 
-  Eigen::Vector3d to_world(const Eigen::Vector2d& uv_m) const { return origin_m + uv_m.x() * axis_u + uv_m.y() * axis_v; }
+  Eigen::Vector3d to_world(const Eigen::Vector2d& uv_m) const {
+    return origin_m + uv_m.x() * axis_u + uv_m.y() * axis_v;
+  }
   Eigen::Vector2d to_plane(const Eigen::Vector3d& p_world_m) const {
     return {(p_world_m - origin_m).dot(axis_u), (p_world_m - origin_m).dot(axis_v)};
   }
@@ -37,10 +39,10 @@ struct Outline {
 /// The basis of a plane at a point: depends on the normal alone for its directions, so equal planes have equal bases.
 PlaneBasis basis_of(const Plane& plane, const Eigen::Vector3d& centroid_m);
 
-/// Outline of the cells of one plane: the union of squares of a cell's size about the cells' centres, gaps of less than a
-/// cell closed, corners simplified to a quarter of a cell.
+/// Outline of the cells of one plane: the union of squares of a cell's size about the cells' centres, gaps of less than
+/// a cell closed, corners simplified to a quarter of a cell.
 /// @param cell_centres_m  virtual centres of the plane's cells, world frame
-Outline outline_of(const Plane& plane, const Eigen::Vector3d& centroid_m, std::span<const Eigen::Vector3d> cell_centres_m,
-                   double cell_size_m);
+Outline outline_of(const Plane& plane, const Eigen::Vector3d& centroid_m,
+                   std::span<const Eigen::Vector3d> cell_centres_m, double cell_size_m);
 
 }  // namespace planemap

@@ -80,17 +80,20 @@ class PlaneMap {
     std::int64_t first_seen_utime = 0;
     std::int64_t last_seen_utime = 0;
     std::size_t cells_when_bridged = 0;
-    bool dirty = false;
+    int scans_since_bridged = 0;
+    bool touched = false;  ///< by this scan
+    bool dirty = false;    ///< since the last update_records()
   };
 
   State& state(PlaneSlot slot) { return *states_[slot]; }
   const State& state(PlaneSlot slot) const { return *states_[slot]; }
-  void mark_dirty(PlaneSlot slot);
+  void mark_changed(PlaneSlot slot);
   void refit(PlaneSlot slot);
 
   void join(UncertainGrid& grid, CellRef ref, PlaneSlot slot);
   void leave(UncertainGrid& grid, CellRef ref);
   float member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const;
+  void reweigh(UncertainGrid& grid, PlaneSlot slot);
   double band_m(const Cell& cell, const PlaneFit& fit) const;
 
   bool agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
@@ -110,9 +113,11 @@ class PlaneMap {
   GridConfig grid_config_;
   PlaneConfig config_;
   double max_angle_rad_;
+  double core_cosine_;
   std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed
-  std::vector<PlaneSlot> dirty_;
-  std::vector<RemovedPlane> removed_;  ///< since the last update_records()
+  std::vector<PlaneSlot> touched_;              ///< by this scan
+  std::vector<PlaneSlot> dirty_;                ///< since the last update_records()
+  std::vector<RemovedPlane> removed_;           ///< since the last update_records()
   CoarseIndex coarse_;
 };
 

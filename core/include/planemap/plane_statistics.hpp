@@ -20,7 +20,8 @@ struct PlaneFit {
   double deviation_rad = 0.0;                            ///< of the normal
   double weight = 0.0;                                   ///< of the evidence: the sum of 1 / sigma^2, 1/m2
 
-  /// Length of a uniform strip with the greatest spread, metres.
+  /// Width and length of the uniform rectangle with these spreads, metres.
+  double width_m() const;
   double extent_m() const;
 };
 

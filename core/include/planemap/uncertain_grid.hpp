@@ -16,7 +16,7 @@ struct CellRef {
   std::uint32_t block = 0;    ///< slot of the block in the grid
   std::uint32_t ordinal = 0;  ///< of the cell in the block
 
-  bool operator==(const CellRef&) const = default;
+  auto operator<=>(const CellRef&) const = default;
 };
 
 /// The dynamic grid (paper, section III): a hash of blocks in the world frame. Blocks are shared with snapshots and
