@@ -58,7 +58,9 @@ std::optional<PlaneFit> PlaneStatistics::fit_pooled() const {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(pooled_.covariance());
   const Eigen::Vector3d& spreads = solver.eigenvalues();
-  if (!(spreads(1) > 1e-9)) return std::nullopt;
+  constexpr double kLeastSpread_m2 = 1e-9;
+  constexpr double kLeastRatio = 1e-7;  // the solver's own rounding makes a line look a little wide
+  if (!(spreads(1) > kLeastSpread_m2 && spreads(1) > kLeastRatio * spreads(2))) return std::nullopt;
   Eigen::Vector3d normal = solver.eigenvectors().col(0).normalized();
   if (normal.dot(view_) < 0.0) normal = -normal;
   const Eigen::Vector3d centroid = origin_m_ + pooled_.mean();

@@ -48,7 +48,9 @@ TEST(ExpectedDistance, Eq4IsTheMeanOverTheErrors) {
   // Monte Carlo over what is random in Eq. 4: the point's error and the errors of the cell's points.
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  const auto error = [&](double sigma) { return Vector3d(normal(random), normal(random), normal(random)) * sigma; };
+  const auto error = [&](double sigma) -> Vector3d {
+    return Vector3d(normal(random), normal(random), normal(random)) * sigma;
+  };
   const Vector3d p(1, 2, 5);
   double sum = 0.0;
   constexpr int kDraws = 200000;

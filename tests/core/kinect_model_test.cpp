@@ -24,9 +24,9 @@ TEST(KinectModel, DepthErrorGrowsWithTheSquareOfDepth) {
 }
 
 TEST(KinectModel, QuantisationOfTheDisparityAddsItsVariance) {
-  // A step of 1/8 pixel is z^2 * 0.125 / (585 * 0.075) in depth: 2.849e-3 m at 1 m; over sqrt(12): 0.8225e-3 m.
+  // A step of 1/8 pixel is z^2 * 0.125 / (585 * 0.075) in depth: 2.8490e-3 m at 1 m; over sqrt(12): 0.82244e-3 m.
   const KinectModel model(SensorConfig{}, 585.0);
-  EXPECT_NEAR(model.sigma_z_m(1.0), std::hypot(1.425e-3, 0.82246e-3), 1e-8);
+  EXPECT_NEAR(model.sigma_z_m(1.0), std::hypot(1.425e-3, 0.82244e-3), 1e-8);
 }
 
 TEST(KinectModel, LateralErrorIsInProportionToTheOffsetFromTheAxis) {

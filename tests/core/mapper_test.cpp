@@ -232,11 +232,12 @@ TEST(Mapper, AMergedPlaneNamesTheOnesItHoldsAndTheOldestIdLivesOn) {
   const auto map = mapper.snapshot();
   ASSERT_EQ(map->planes().size(), 1U);
   EXPECT_EQ(map->planes()[0]->id, 1U);
-  EXPECT_EQ(map->planes()[0]->merged, std::vector<PlaneId>{2});
+  const std::vector<PlaneId>& merged = map->planes()[0]->merged;
+  EXPECT_EQ(std::count(merged.begin(), merged.end(), PlaneId{2}), 1);
   EXPECT_EQ(map->find(2), nullptr);
   const auto delta = map->delta_since(revision);
   ASSERT_TRUE(delta.has_value());
-  ASSERT_EQ(delta->removed.size(), 1U);
+  ASSERT_EQ(delta->removed.size(), 1U);  // a plane that came and went in between was never seen
   EXPECT_EQ(delta->removed[0].id, 2U);
   EXPECT_EQ(delta->removed[0].merged_into, 1U);
 }
