@@ -108,7 +108,7 @@ std::vector<std::uint16_t> KinectSensor::measure(const RenderedImage& image, std
       if (loses_returns) {
         const float cos_incidence = image.cos_incidence[at];
         if (cos_incidence < grazing_cos && share_of(bits, 1) < lost_share(cos_incidence)) continue;
-        if (share_of(bits, 2) < border_loss && beside_step(image, u, v)) continue;
+        if (beside_step(image, u, v) && share_of(bits, 2) < border_loss) continue;
       }
       if (!quantised) {
         const double noise_px = disparity_sigma_px_ * static_cast<double>(quantiles_[bits % kQuantiles]);
