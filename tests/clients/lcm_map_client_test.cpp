@@ -214,10 +214,10 @@ TEST_F(LcmMapClientTest, BytesThatAreNoReplyAndAnswersToOthersArePassedOver) {
   EXPECT_EQ(client_->malformed_count(), 2u);
 }
 
-TEST(LcmMapClientConnect, AnUrlThatLcmCannotOpenIsUnreachable) {
+TEST(LcmMapClientConnect, AnUrlThatLcmCannotOpenIsNoNetwork) {
   const auto client = LcmMapClient::connect("nonsense://");
   ASSERT_FALSE(client);
-  EXPECT_EQ(client.error().kind, Error::Kind::kUnreachable);
+  EXPECT_EQ(client.error().kind, Error::Kind::kNoNetwork);
   EXPECT_NE(client.error().message.find("nonsense://"), std::string::npos);
 }
 

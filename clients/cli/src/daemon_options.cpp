@@ -23,7 +23,9 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options) {
 }
 
 ExitCode complain(const client::Error& error, const DaemonOptions& options) {
-  if (error.kind != client::Error::Kind::kUnreachable) return complain(ExitCode::kFailed, error.message);
+  using Kind = client::Error::Kind;
+  if (error.kind == Kind::kNoNetwork) return complain(ExitCode::kUnreachable, error.message);
+  if (error.kind != Kind::kUnreachable) return complain(ExitCode::kFailed, error.message);
   return complain(ExitCode::kUnreachable,
                   error.message + "; is planemapd running, and listening at " + options.lcm_url + " (--lcm-url)?");
 }

@@ -7,7 +7,7 @@ enum class ExitCode : int {
   kDone = 0,
   kFailed = 1,
   kWrongUse = 2,     ///< arguments or configuration
-  kUnreachable = 3,  ///< no daemon answered
+  kUnreachable = 3,  ///< no daemon answered, or there is no way to it
 };
 
 }  // namespace planemap::cli

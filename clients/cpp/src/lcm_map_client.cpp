@@ -41,8 +41,8 @@ std::string with_receive_buffer(const std::string& url) {
   return url + (url.find('?') == std::string::npos ? '?' : '&') + kReceiveBuffer;
 }
 
-tl::unexpected<Error> unreachable(std::string message) {
-  return tl::make_unexpected(Error{Error::Kind::kUnreachable, std::move(message)});
+tl::unexpected<Error> no_network(std::string message) {
+  return tl::make_unexpected(Error{Error::Kind::kNoNetwork, std::move(message)});
 }
 
 std::string seconds_text(milliseconds time) {
@@ -153,15 +153,16 @@ tl::unexpected<Error> LcmMapClient::Impl::gave_up(milliseconds timeout) const {
     return tl::make_unexpected(
         Error{Error::Kind::kMalformed, "no answer that can be read came" + within + " (" + last_malformed_ + ")"});
   }
-  return unreachable("no planemap service answered on " + options_.request_channel + within);
+  return tl::make_unexpected(
+      Error{Error::Kind::kUnreachable, "no planemap service answered on " + options_.request_channel + within});
 }
 
 Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, milliseconds timeout) {
   const auto not_sent = [] {
-    return unreachable("LCM can't send: is there a route for multicast? (ip route add 224.0.0.0/4 dev lo)");
+    return no_network("LCM can't send: is there a route for multicast? (ip route add 224.0.0.0/4 dev lo)");
   };
   const Clock::time_point deadline = Clock::now() + timeout;
-  if (subscription_ == nullptr) return unreachable("LCM can't subscribe to " + reply_channel_);
+  if (subscription_ == nullptr) return no_network("LCM can't subscribe to " + reply_channel_);
   if (!begin(operation)) return not_sent();
   Clock::time_point ask_again_at = Clock::now() + options_.ask_again_after;
   while (!collector_.complete()) {
@@ -182,7 +183,7 @@ Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, m
     const auto wait = std::chrono::ceil<milliseconds>(std::min(deadline, ask_again_at) - now);
     const std::size_t before = collector_.received();
     if (bus_->handleTimeout(static_cast<int>(std::max<std::int64_t>(wait.count(), 1))) < 0) {
-      return unreachable("LCM failed while it waited for the answer");
+      return no_network("LCM failed while it waited for the answer");
     }
     if (collector_.received() != before) ask_again_at = Clock::now() + options_.lost_page_after;
   }
@@ -192,8 +193,8 @@ Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, m
 Expected<std::unique_ptr<LcmMapClient>> LcmMapClient::connect(const std::string& url, const LcmClientOptions& options) {
   auto bus = std::make_shared<lcm::LCM>(with_receive_buffer(url));
   if (!bus->good()) {
-    return unreachable("LCM can't be opened at " + url +
-                       "; check the URL and that there is a route for multicast (ip route add 224.0.0.0/4 dev lo)");
+    return no_network("LCM can't be opened at " + url +
+                      "; check the URL and that there is a route for multicast (ip route add 224.0.0.0/4 dev lo)");
   }
   return std::make_unique<LcmMapClient>(std::move(bus), options);
 }

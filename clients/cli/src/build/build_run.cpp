@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "build/frame_prefetcher.hpp"
@@ -38,6 +40,11 @@ void finish(OfflineBuilder& builder, BuildResult& result) {
   result.last_problem = builder.last_problem();
 }
 
+std::size_t total_of(const std::map<std::string, std::size_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& count) { return sum + count.second; });
+}
+
 Expected<BuildResult> build_from_folder(const BuildInput& input, ServiceConfig config, Progress& progress) {
   auto source = sources::open_folder(input.path, input.folder);
   if (!source) return tl::make_unexpected(source.error());
@@ -48,24 +55,20 @@ Expected<BuildResult> build_from_folder(const BuildInput& input, ServiceConfig c
 
   BuildResult result;
   OfflineBuilder builder(config, *epoch);
-  std::size_t total = (*source)->size().value_or(0);
-  if (input.frames) total = std::min(total, *input.frames);
-  {
-    FramePrefetcher frames(**source);
-    std::size_t count = 0;
-    while (!input.frames || count < *input.frames) {
-      auto frame = frames.next();
-      if (!frame) break;
-      builder.add_frame(std::move(frame->scan), frame->T_world_sensor);
-      ++count;
-      if (progress.due() && total > 0) {
-        progress.show(static_cast<double>(count) / static_cast<double>(total), count,
-                      builder.snapshot()->planes().size());
-      }
+  const std::size_t total = std::min((*source)->size().value_or(0), input.frames.value_or(SIZE_MAX));
+  FramePrefetcher frames(**source);
+  for (std::size_t count = 0; !input.frames || count < *input.frames;) {
+    auto frame = frames.next();
+    if (!frame) break;
+    builder.add_frame(std::move(frame->scan), frame->T_world_sensor);
+    ++count;
+    if (progress.due() && total > 0) {
+      const std::size_t read = count + (input.frames ? 0 : total_of(frames.skipped()));
+      progress.show(static_cast<double>(read) / static_cast<double>(total), count, builder.snapshot()->planes().size());
     }
   }
   finish(builder, result);
-  result.skipped = (*source)->skipped();
+  result.skipped = frames.skipped();
   result.config = std::move(config);
   return result;
 }

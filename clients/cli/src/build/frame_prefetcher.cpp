@@ -24,10 +24,11 @@ void FramePrefetcher::read(const std::stop_token& stop) {
     }
     std::unique_lock lock(mutex_);
     if (frame) {
-      changed_.wait(lock, stop, [this] { return frames_.size() < kAhead; });
-      frames_.push_back(std::move(*frame));
+      changed_.wait(lock, stop, [this] { return entries_.size() < kAhead; });
+      entries_.push_back({std::move(*frame), source_.skipped()});
     } else {
       ended_ = true;
+      skipped_at_end_ = source_.skipped();
       error_ = error;
     }
     changed_.notify_all();
@@ -36,13 +37,15 @@ void FramePrefetcher::read(const std::stop_token& stop) {
 
 std::optional<sources::Frame> FramePrefetcher::next() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return !frames_.empty() || ended_; });
-  if (frames_.empty()) {
+  changed_.wait(lock, [this] { return !entries_.empty() || ended_; });
+  if (entries_.empty()) {
+    skipped_ = skipped_at_end_;
     if (error_) std::rethrow_exception(error_);
     return std::nullopt;
   }
-  sources::Frame frame = std::move(frames_.front());
-  frames_.pop_front();
+  sources::Frame frame = std::move(entries_.front().frame);
+  skipped_ = std::move(entries_.front().skipped);
+  entries_.pop_front();
   changed_.notify_all();
   return frame;
 }

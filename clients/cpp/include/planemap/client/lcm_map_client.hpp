@@ -27,7 +27,7 @@ std::string default_lcm_url();
 class LcmMapClient {
  public:
   /// Opens LCM; a receive buffer that holds a whole answer is added to udpm URLs that name none.
-  /// Fails (kUnreachable) if it can't be opened; the error says what to do.
+  /// Fails (kNoNetwork) if it can't be opened; the error says what to do.
   static Expected<std::unique_ptr<LcmMapClient>> connect(const std::string& url, const LcmClientOptions& options = {});
 
   /// Uses a bus of the caller's, which nobody else may handle during calls and which must outlive the client.

@@ -81,7 +81,8 @@ struct Status {
 /// Why a request got no answer that can be used.
 struct Error {
   enum class Kind {
-    kUnreachable,  ///< nobody answered, or the network can't be used
+    kNoNetwork,    ///< LCM can't be opened, or can't send
+    kUnreachable,  ///< nobody answered
     kIncomplete,   ///< the service answered, but pages were still missing when time was up
     kRefused,      ///< the service answered with an error
     kMalformed,    ///< the answer contradicts itself
