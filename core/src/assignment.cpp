@@ -17,6 +17,12 @@ inline int floor_to_int(double x) {
   return i - static_cast<int>(x < i);
 }
 
+/// Which eighth of a cell a point lies in, from its place relative to the cell's centre: a bit for each axis.
+inline std::uint32_t eighth_of(const Eigen::Vector3d& q_m) {
+  return static_cast<std::uint32_t>(q_m.x() >= 0.0) | static_cast<std::uint32_t>(q_m.y() >= 0.0) << 1 |
+         static_cast<std::uint32_t>(q_m.z() >= 0.0) << 2;
+}
+
 /// Points beyond are not representable as cell indices; a map of that size is a mistake in the pose.
 constexpr double kMaxCoordinateCells = 1e9;
 
@@ -54,6 +60,7 @@ template <class ScanType>
 PointCounts Assigner::assign_points(UncertainGrid& grid, const ScanType& scan,
                                     const Eigen::Isometry3d& T_world_sensor) {
   const double inverse_size = 1.0 / grid.cell_size_m();
+  const double quarter_edge_m = 0.25 * grid.cell_size_m();
   const Eigen::Vector3d origin = T_world_sensor.translation();
   Run run;
   CellIndex last_index = CellIndex::Constant(std::numeric_limits<int>::min());
@@ -71,27 +78,15 @@ PointCounts Assigner::assign_points(UncertainGrid& grid, const ScanType& scan,
       last_own = own_cell(grid, index, origin);
       last_index = index;
     }
-    const OwnCell& own = own_[last_own];
+    OwnCell& own = own_[last_own];
     const Eigen::Vector3d q = point.p_world_m - own.centre_m;
+    const std::uint32_t eighth = eighth_of(q);
+    if (own.eighths[eighth].count == 0) list_eighth(own, eighth, quarter_edge_m);
+    const CellRef winner = nearest(own.eighths[eighth], q).cell;
 
-    // Eq. 7 without the terms that are the same for all candidates.
-    std::uint32_t best = own.first;
-    double best_distance = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = own.first; i < own.first + own.count; ++i) {
-      const Candidate& c = candidates_[i];
-      const double dx = q.x() - c.x;
-      const double dy = q.y() - c.y;
-      const double dz = q.z() - c.z;
-      const double distance = dx * dx + dy * dy + dz * dz + c.bias;
-      if (distance < best_distance) {
-        best_distance = distance;
-        best = i;
-      }
-    }
-
-    if (run.n == 0.0 || run.own != last_own || run.candidate != best) {
+    if (run.n == 0.0 || run.own != last_own || run.cell != winner) {
       if (run.n > 0.0) flush(grid, run);
-      run = {last_own, best, 1.0, q, Symmetric3::outer(q), point.variance_sensor_m2};
+      run = {last_own, winner, 1.0, q, Symmetric3::outer(q), point.variance_sensor_m2};
       return;
     }
     run.n += 1.0;
@@ -106,13 +101,29 @@ PointCounts Assigner::assign_points(UncertainGrid& grid, const ScanType& scan,
   return counts;
 }
 
+const Assigner::Candidate& Assigner::nearest(Range range, const Eigen::Vector3d& q_m) const {
+  const Candidate* best = &candidates_[range.first];
+  if (range.count == 1) return *best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate* c = best; c != &candidates_[range.first] + range.count; ++c) {
+    // Eq. 7 without the terms that are the same for all candidates.
+    const double dx = q_m.x() - c->x;
+    const double dy = q_m.y() - c->y;
+    const double dz = q_m.z() - c->z;
+    const double distance = dx * dx + dy * dy + dz * dz + c->bias;
+    if (distance >= least) continue;
+    least = distance;
+    best = c;
+  }
+  return *best;
+}
+
 std::uint32_t Assigner::own_cell(UncertainGrid& grid, const CellIndex& index, const Eigen::Vector3d& origin_m) {
   const CellRef ref = grid.find_or_add(index);
   const std::uint32_t change = working(grid, ref);
   if (own_of_change_[change] >= 0) return static_cast<std::uint32_t>(own_of_change_[change]);
 
   OwnCell own;
-  own.index = index;
   own.centre_m = grid.geometric_centre_m(index);
   list_candidates(grid, own, ref, origin_m);
   own_of_change_[change] = static_cast<std::int32_t>(own_.size());
@@ -121,10 +132,11 @@ std::uint32_t Assigner::own_cell(UncertainGrid& grid, const CellIndex& index, co
 }
 
 void Assigner::list_candidates(const UncertainGrid& grid, OwnCell& own, CellRef ref, const Eigen::Vector3d& origin_m) {
-  own.first = static_cast<std::uint32_t>(candidates_.size());
+  own.all.first = static_cast<std::uint32_t>(candidates_.size());
   if (grid.cell(ref).sums.count() <= 0.0) {
     candidates_.push_back({0.0, 0.0, 0.0, 0.0, ref});
-    own.count = 1;
+    own.all.count = 1;
+    own.eighths.fill(own.all);
     return;
   }
   const double half = 0.5 * grid.cell_size_m();
@@ -140,26 +152,30 @@ void Assigner::list_candidates(const UncertainGrid& grid, OwnCell& own, CellRef 
     centre += grid.geometric_centre_m(other) - own.centre_m;
     candidates_.push_back({centre.x(), centre.y(), centre.z(), centre_variance(statistics), other});
   });
-  own.count = static_cast<std::uint32_t>(candidates_.size()) - own.first;
-  strike_out(own, half);
+  own.all.count = static_cast<std::uint32_t>(candidates_.size()) - own.all.first;
 }
 
-void Assigner::strike_out(OwnCell& own, double half_edge_m) {
-  // The difference of two candidates' distances is affine in the point: who loses to another on all eight corners of
-  // the own cell loses everywhere in it. The other is the winner at the middle, which strikes out nearly all that can
-  // be.
-  const auto begin = candidates_.begin() + own.first;
-  const auto at_middle = [](const Candidate& c) { return c.x * c.x + c.y * c.y + c.z * c.z + c.bias; };
-  const Candidate winner = *std::min_element(
-      begin, candidates_.end(), [&](const Candidate& a, const Candidate& b) { return at_middle(a) < at_middle(b); });
-  const auto loses = [&](const Candidate& c) {
-    if (c.cell == winner.cell) return false;
+void Assigner::list_eighth(OwnCell& own, std::uint32_t eighth, double quarter_edge_m) {
+  const auto side = [&](std::uint32_t bit) { return (eighth & bit) != 0 ? quarter_edge_m : -quarter_edge_m; };
+  own.eighths[eighth] = without_losers(own.all, {side(1), side(2), side(4)}, quarter_edge_m);
+}
+
+Assigner::Range Assigner::without_losers(Range range, const Eigen::Vector3d& middle_m, double half_edge_m) {
+  // The difference of two candidates' distances is affine in the point: who loses to another on all eight corners of a
+  // box loses everywhere in it. The other is the winner at the middle, which strikes out nearly all that can be.
+  const auto at_middle = [&](const Candidate& c) {
+    return (middle_m - Eigen::Vector3d(c.x, c.y, c.z)).squaredNorm() + c.bias;
+  };
+  const Candidate winner = nearest(range, middle_m);
+  const double least = at_middle(winner);
+  const auto first = static_cast<std::uint32_t>(candidates_.size());
+  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
+    const Candidate c = candidates_[i];
     // distance(c) - distance(winner) is least where each coordinate pulls hardest towards c.
     const double pull = std::abs(c.x - winner.x) + std::abs(c.y - winner.y) + std::abs(c.z - winner.z);
-    return at_middle(c) - at_middle(winner) - 2.0 * half_edge_m * pull > 0.0;
-  };
-  candidates_.erase(std::remove_if(begin, candidates_.end(), loses), candidates_.end());
-  own.count = static_cast<std::uint32_t>(candidates_.size()) - own.first;
+    if (at_middle(c) - least - 2.0 * half_edge_m * pull <= 0.0) candidates_.push_back(c);
+  }
+  return {first, static_cast<std::uint32_t>(candidates_.size()) - first};
 }
 
 std::uint32_t Assigner::working(UncertainGrid& grid, CellRef ref) {
@@ -173,9 +189,8 @@ std::uint32_t Assigner::working(UncertainGrid& grid, CellRef ref) {
 }
 
 void Assigner::flush(UncertainGrid& grid, const Run& run) {
-  const Candidate& candidate = candidates_[run.candidate];
-  CellSums& added = changes_[working(grid, candidate.cell)].added;
-  const Eigen::Vector3d shift_m = own_[run.own].centre_m - grid.geometric_centre_m(candidate.cell);
+  CellSums& added = changes_[working(grid, run.cell)].added;
+  const Eigen::Vector3d shift_m = own_[run.own].centre_m - grid.geometric_centre_m(run.cell);
   added.points.add(Moments{run.n, run.first_m, run.second_m2}, 1.0, shift_m);
   added.error_m2 += R_squared_ * run.variance_sensor_m2;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <planemap/cell.hpp>
 #include <planemap/config.hpp>
@@ -39,17 +40,22 @@ class Assigner {
     double bias;  ///< S_s / n^2, square metres
     CellRef cell;
   };
-  /// Candidates of the points that lie in one cell.
-  struct OwnCell {
-    CellIndex index = CellIndex::Zero();
-    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+  /// A part of candidates_.
+  struct Range {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
+  };
+  /// Candidates of the points that lie in one cell, and of those in each eighth of it; these are listed when a point
+  /// comes.
+  struct OwnCell {
+    Eigen::Vector3d centre_m = Eigen::Vector3d::Zero();
+    Range all;
+    std::array<Range, 8> eighths;
   };
   /// Neighbouring points that go to the same cell, summed up before they are handed over.
   struct Run {
     std::uint32_t own = 0;
-    std::uint32_t candidate = 0;
+    CellRef cell;
     double n = 0.0;
     Eigen::Vector3d first_m;
     Symmetric3 second_m2;
@@ -60,7 +66,9 @@ class Assigner {
   PointCounts assign_points(UncertainGrid& grid, const ScanType& scan, const Eigen::Isometry3d& T_world_sensor);
   std::uint32_t own_cell(UncertainGrid& grid, const CellIndex& index, const Eigen::Vector3d& origin_m);
   void list_candidates(const UncertainGrid& grid, OwnCell& own, CellRef ref, const Eigen::Vector3d& origin_m);
-  void strike_out(OwnCell& own, double half_edge_m);
+  void list_eighth(OwnCell& own, std::uint32_t eighth, double quarter_edge_m);
+  Range without_losers(Range range, const Eigen::Vector3d& middle_m, double half_edge_m);
+  const Candidate& nearest(Range range, const Eigen::Vector3d& q_m) const;
   std::uint32_t working(UncertainGrid& grid, CellRef ref);
   void flush(UncertainGrid& grid, const Run& run);
 
