@@ -11,9 +11,8 @@ pattern=${2:-.}
   exit 1
 }
 
-# PCL's headers take clang-tidy half a minute a file and bring no code of ours.
-mapfile -t files < <(git ls-files 'core/*.cpp' 'service/*.cpp' 'clients/*.cpp' 'tests/*.cpp' |
-  grep --invert-match '^tests/sanitizer/planted_' |
+# What is shipped: the tests would double the time. PCL's headers take half a minute a file and bring no code of ours.
+mapfile -t files < <(git ls-files 'core/*.cpp' 'service/*.cpp' 'clients/*.cpp' |
   xargs grep --files-without-match --extended-regexp '#include <pcl/' |
   grep --extended-regexp -- "$pattern")
 ((${#files[@]})) || {
