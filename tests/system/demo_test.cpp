@@ -61,7 +61,7 @@ TEST_F(Demo, LeavesNothingBehindWhenInterrupted) {
   ASSERT_TRUE(demo_run->running()) << demo_run->output();
   kill(-demo_run->pid(), SIGINT);  // as a terminal does on Ctrl-C
   EXPECT_EQ(demo_run->wait_for(15s), 130) << demo_run->output();
-  EXPECT_TRUE(all_gone(demo_run->pid()));
+  EXPECT_TRUE(bus_->wait_until([&] { return all_gone(demo_run->pid()); }, 3s));
 }
 
 TEST_F(Demo, RefusesToMixWithAnotherDaemon) {
