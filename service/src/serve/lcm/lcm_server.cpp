@@ -15,6 +15,11 @@ constexpr std::size_t kMaxJobs = 16;      // answers that wait for their turn on
 constexpr double kLogPeriodS = 1.0;
 constexpr double kWarnPeriodS = 5.0;
 
+/// Behind a message of which others were held back.
+std::string repeats_text(int count) {
+  return count > 1 ? fmt::format(" ({} times since this was said last)", count) : std::string();
+}
+
 std::int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
@@ -65,7 +70,7 @@ void LcmServer::on_request(std::span<const std::uint8_t> message) {
 void LcmServer::reject(const std::string& reason, const std::string& message) {
   counters_.add("requests.rejected." + reason);
   const int count = request_repeats_.pass(reason, steady_now_s());
-  if (count > 0) spdlog::warn("channel {}: {} ({} since this was said last)", config_.request_channel, message, count);
+  if (count > 0) spdlog::warn("channel {}: {}{}", config_.request_channel, message, repeats_text(count));
 }
 
 void LcmServer::wake() {
