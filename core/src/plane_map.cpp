@@ -67,12 +67,19 @@ float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const Plan
   return static_cast<float>(weight / (excess * excess));
 }
 
+void PlaneMap::forget_left_cells(const UncertainGrid& grid, PlaneSlot slot) {
+  std::vector<CellRef>& cells = state(slot).cells;
+  const auto left = [&](CellRef ref) { return grid.cell(ref).plane != slot; };
+  cells.erase(std::remove_if(cells.begin(), cells.end(), left), cells.end());
+  sort_unique(cells);
+}
+
 void PlaneMap::reweigh(UncertainGrid& grid, PlaneSlot slot) {
   State& plane = state(slot);
-  const auto left = [&](CellRef ref) { return grid.cell(ref).plane != slot; };
-  plane.cells.erase(std::remove_if(plane.cells.begin(), plane.cells.end(), left), plane.cells.end());
-  sort_unique(plane.cells);
-  if (plane.cells.empty() || plane.cells.size() > kReweighedCells || !(config_.core_sigmas > 0.0)) return;
+  const std::size_t members = plane.statistics.cell_count();
+  const bool small = members <= kReweighedCells;
+  if (small || plane.cells.size() > 2 * members) forget_left_cells(grid, slot);
+  if (!small || plane.cells.empty() || !(config_.core_sigmas > 0.0)) return;
   // Where no cell is good enough to shape the plane, they all do.
   const bool any_core = std::any_of(plane.cells.begin(), plane.cells.end(),
                                     [&](CellRef ref) { return member_weight(grid, ref, plane.fit) > 0.0F; });
@@ -134,6 +141,7 @@ bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const Plan
     return false;
   }
   if (!config_.offset_test) return true;
+  if (!(a.weight() > 0.0 && b.weight() > 0.0)) return false;
   // How far the smaller one's evidence lies from the larger one's plane, beyond what it scatters about its own.
   const bool a_is_smaller = a.weight() < b.weight();
   const PlaneStatistics& smaller = a_is_smaller ? a : b;

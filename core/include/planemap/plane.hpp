@@ -62,7 +62,7 @@ struct PlaneRecord {
   std::uint64_t point_count = 0;
   std::int64_t first_seen_utime = 0;  ///< microseconds
   std::int64_t last_seen_utime = 0;   ///< microseconds
-  double quality = 0.0;               ///< 0 to 1: expected share of points within 3 sigma of the plane
+  double quality = 0.0;               ///< 0 to 1: share of its points in cells that agree with it and shape it
   std::uint64_t revision = 0;         ///< of the map, when this record was made
   std::vector<PlaneId> merged;        ///< ids of the planes that were merged into it, ascending
 };

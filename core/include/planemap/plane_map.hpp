@@ -93,6 +93,7 @@ class PlaneMap {
   void join(UncertainGrid& grid, CellRef ref, PlaneSlot slot);
   void leave(UncertainGrid& grid, CellRef ref);
   float member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const;
+  void forget_left_cells(const UncertainGrid& grid, PlaneSlot slot);
   void reweigh(UncertainGrid& grid, PlaneSlot slot);
   double band_m(const Cell& cell, const PlaneFit& fit) const;
 
