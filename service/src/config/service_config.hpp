@@ -112,7 +112,7 @@ void visit_fields(Config& c, Visit&& visit) {
 }
 
 struct QueueConfig {
-  int scans = 4;  ///< bound; the oldest is dropped
+  int scans = 16;  ///< bound, half a second of a Kinect; the oldest is dropped
 };
 
 template <MaybeConst<QueueConfig> Config, class Visit>
