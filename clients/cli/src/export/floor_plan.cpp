@@ -145,8 +145,9 @@ PlanWall wall_of(const ExportPlane& plane, const PlanFrame& frame, const std::op
   }
   std::vector<Interval> standing;
   if (floor_m) {
-    for (double cut_m = kCutLowM; cut_m < kCutHighM + kCutStepM / 2; cut_m += kCutStepM) {
-      cut_at(rings, *floor_m + cut_m, standing);
+    const auto cuts = std::lround((kCutHighM - kCutLowM) / kCutStepM);
+    for (long i = 0; i <= cuts; ++i) {
+      cut_at(rings, *floor_m + kCutLowM + static_cast<double>(i) * kCutStepM, standing);
     }
   } else {
     standing = extent;  // without a floor no height is known to cut at
