@@ -98,7 +98,7 @@ double NormalEstimator::allowed_variance_m2(double expected_m2) const {
 
 std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const UncertainGrid& grid, CellRef ref) {
   neighbourhood_.assign(1, ref);
-  const std::optional<Fit> own = fit_gathered(grid, ref);
+  std::optional<Fit> own = fit_gathered(grid, ref);
   // The own points must span a patch: a strip along an edge turns freely about it.
   const double least_spread_m = 0.15 * grid.cell_size_m();
   if (!own || !is_flat(*own) || own->spread_1_m2 < least_spread_m * least_spread_m) return std::nullopt;
@@ -112,7 +112,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const Uncer
            own->normal.dot(sums.view.cast<double>()) < 0.0;
   };
   neighbourhood_.erase(std::remove_if(neighbourhood_.begin(), neighbourhood_.end(), elsewhere), neighbourhood_.end());
-  const std::optional<Fit> together = fit_gathered(grid, ref);
+  std::optional<Fit> together = fit_gathered(grid, ref);
   if (together && is_flat(*together)) return together;
   neighbourhood_.assign(1, ref);
   return own;

@@ -91,8 +91,8 @@ void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) co
       for (int dx = -depth; dx <= depth; ++dx) {
         const CellIndex there = index + CellIndex(dx, dy, dz);
         const BlockIndex step = block_of(there) - home.index();
-        const std::uint32_t slot =
-            around[static_cast<std::size_t>(step.x() + 1 + 3 * (step.y() + 1) + 9 * (step.z() + 1))];
+        const int towards = step.x() + 1 + 3 * (step.y() + 1) + 9 * (step.z() + 1);
+        const std::uint32_t slot = around[static_cast<std::size_t>(towards)];
         if (slot == kNoBlock) continue;
         const int ordinal = blocks_[slot]->find(place_of(there));
         if (ordinal >= 0) visit(CellRef{slot, static_cast<std::uint32_t>(ordinal)});
