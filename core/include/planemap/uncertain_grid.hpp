@@ -16,7 +16,10 @@ struct CellRef {
   std::uint32_t block = 0;    ///< slot of the block in the grid
   std::uint32_t ordinal = 0;  ///< of the cell in the block
 
-  auto operator<=>(const CellRef&) const = default;
+  bool operator==(const CellRef&) const = default;
+  bool operator<(const CellRef& other) const {
+    return block != other.block ? block < other.block : ordinal < other.ordinal;
+  }
 };
 
 /// The dynamic grid (paper, section III): a hash of blocks in the world frame. Blocks are shared with snapshots and
