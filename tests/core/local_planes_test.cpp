@@ -31,10 +31,6 @@ struct OneScan {
   std::vector<LocalPlane> planes;
 };
 
-double degrees_between(const Vector3d& a, const Vector3d& b) {
-  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / M_PI;
-}
-
 const std::vector<testing::Wall> kCorner = {{Vector3d(-1, 0.1, 0.05).normalized(), 2.2},
                                             {Vector3d(0.1, 1, -0.03).normalized(), 1.0}};
 
@@ -44,8 +40,8 @@ TEST_P(LocalPlanes, ACornerGivesItsTwoWalls) {
   const OneScan scan(kCorner, testing::looking({0.3, 0.4, 0.0}, {2.0, -0.6, 0.0}), preset(GetParam()));
   ASSERT_GE(scan.planes.size(), 2U);
   for (const testing::Wall& wall : kCorner) {
-    const double nearest = std::min(degrees_between(scan.planes[0].fit.plane.normal(), wall.normal),
-                                    degrees_between(scan.planes[1].fit.plane.normal(), wall.normal));
+    const double nearest = std::min(testing::degrees_between(scan.planes[0].fit.plane.normal(), wall.normal),
+                                    testing::degrees_between(scan.planes[1].fit.plane.normal(), wall.normal));
     EXPECT_LT(nearest, GetParam() == Preset::kBest ? 0.3 : 5.0);
   }
 }

@@ -15,10 +15,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-double degrees_between(const Vector3d& a, const Vector3d& b) {
-  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / M_PI;
-}
-
 /// A room of 4 x 3 x 2.5 m, turned against the grid; the camera turns round in its middle.
 class Room {
  public:
@@ -57,7 +53,7 @@ TEST(Mapper, ARoomBecomesItsSixPlanes) {
     if (record->cell_count < 60) continue;
     ++large;
     const auto is_of = [&](const testing::Wall& wall) {
-      return degrees_between(wall.normal, record->plane.normal()) < 0.3 &&
+      return testing::degrees_between(wall.normal, record->plane.normal()) < 0.3 &&
              std::abs(wall.normal.dot(record->centroid_m) + wall.d) < 0.003;
     };
     EXPECT_EQ(std::count_if(room.walls.begin(), room.walls.end(), is_of), 1) << "plane " << record->id;
@@ -73,7 +69,7 @@ TEST(Mapper, ThePapersReadingFindsTheWallsToo) {
     const auto map = mapper.snapshot();
     const auto planes = map->planes();
     found += std::any_of(planes.begin(), planes.end(), [&](const auto& record) {
-      return record->cell_count > 100 && degrees_between(wall.normal, record->plane.normal()) < 6.0;
+      return record->cell_count > 100 && testing::degrees_between(wall.normal, record->plane.normal()) < 6.0;
     });
   }
   EXPECT_GE(found, 5U);

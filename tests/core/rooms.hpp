@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <planemap/scan.hpp>
@@ -8,6 +9,10 @@
 #include <vector>
 
 namespace planemap::testing {
+
+inline double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / M_PI;
+}
 
 /// A plane that a made-up room is rendered from: all of it, or the part where keep(point) holds.
 struct Wall {
