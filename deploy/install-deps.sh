@@ -23,6 +23,7 @@ USAGE
 readonly RUN_PACKAGES=(
   iproute2            # the demo's network namespace
   jq                  # the demo reads the daemon's status with it
+  libhwy1
   liblcm1
   libpcl-io1.13
   libpng16-16
@@ -40,6 +41,7 @@ readonly BUILD_PACKAGES=(
   libcli11-dev
   libeigen3-dev
   libexpected-dev
+  libhwy-dev
   liblcm-bin          # lcm-gen
   liblcm-dev
   libpcl-dev

@@ -2,197 +2,191 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
-#include "planemap/expected_distance.hpp"
-#include "planemap/scan_points.hpp"
+#include "near_cells.hpp"
+#include "planemap/kinect_model.hpp"
+#include "simd/select_kernels.hpp"
 
 namespace planemap {
 
 namespace {
 
-/// floor() by conversion: std::floor is a call without SSE4.1. @pre |x| < 2^31
-inline int floor_to_int(double x) {
-  const int i = static_cast<int>(x);
-  return i - static_cast<int>(x < i);
-}
-
-/// Which eighth of a cell a point lies in, from its place relative to the cell's centre: a bit for each axis.
-inline std::uint32_t eighth_of(const Eigen::Vector3d& q_m) {
-  return static_cast<std::uint32_t>(q_m.x() >= 0.0) | static_cast<std::uint32_t>(q_m.y() >= 0.0) << 1 |
-         static_cast<std::uint32_t>(q_m.z() >= 0.0) << 2;
-}
-
 /// Points beyond are not representable as cell indices; a map of that size is a mistake in the pose.
 constexpr double kMaxCoordinateCells = 1e9;
 
+/// The least float that is not below x, and the greatest that is not above it.
+float not_below(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+float not_above(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+/// Depths within the sensor's range, in units of the image.
+struct DepthLimits {
+  std::int32_t nearest;
+  std::int32_t farthest;
+
+  DepthLimits(const SensorConfig& sensor, double scale_m)
+      : nearest(static_cast<std::int32_t>(std::clamp(std::floor(sensor.min_range_m / scale_m), 0.0, 65536.0))),
+        farthest(static_cast<std::int32_t>(std::clamp(std::floor(sensor.max_range_m / scale_m) + 1.0, 0.0, 65535.0))) {
+    while (nearest <= 65535 && nearest * scale_m < sensor.min_range_m) ++nearest;
+    while (farthest >= 0 && farthest * scale_m > sensor.max_range_m) --farthest;
+  }
+};
+
 }  // namespace
+
+/// One scan on its way into the cells; what it needs stays for the next one.
+class Assigner::Pass {
+ public:
+  Pass(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid)
+      : kernels_(simd::kernels(core.simd)), sensor_(sensor), near_(grid) {}
+
+  PointCounts run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor);
+  /// Writes what the scan adds, and makes its cells working ones.
+  void collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor, std::vector<CellChange>& changes) const;
+
+ private:
+  void place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor, double focal_length_px);
+  void read(UncertainGrid& grid, const DepthScan& scan, simd::PieceCounts& counts);
+  void read(UncertainGrid& grid, const PointScan& scan, simd::PieceCounts& counts);
+  void assign_chunk(UncertainGrid& grid);
+
+  const simd::Kernels& kernels_;
+  SensorConfig sensor_;
+  simd::Projection projection_;
+  std::vector<float> ray_x_;
+  simd::PointChunk chunk_;
+  std::array<std::uint32_t, simd::kChunkPoints + 1> begins_{};
+  std::array<simd::Run, simd::kChunkPoints> runs_{};
+  NearCells near_;
+};
+
+PointCounts Assigner::Pass::run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+  const auto* depth = std::get_if<DepthScan>(&scan);
+  place_sensor(grid, T_world_sensor, depth != nullptr ? depth->intrinsics.fx : sensor_.focal_length_px);
+  simd::PieceCounts found;
+  std::visit([&](const auto& s) { read(grid, s, found); }, scan);
+  return {found.mapped + found.no_return + found.out_of_range + found.invalid, found.mapped, found.no_return,
+          found.out_of_range, found.invalid};
+}
+
+void Assigner::Pass::place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor,
+                                  double focal_length_px) {
+  const KinectModel model(sensor_, focal_length_px);
+  const double per_m = 1.0 / grid.cell_size_m();
+  const Eigen::Vector3d sensor_cells = T_world_sensor.translation() * per_m;
+  const bool is_in_this_world = sensor_cells.cwiseAbs().maxCoeff() < kMaxCoordinateCells;
+  const Eigen::Vector3d corner = is_in_this_world ? Eigen::Vector3d(sensor_cells.array().floor()) : sensor_cells;
+  near_.begin(is_in_this_world ? CellIndex(corner.cast<int>()) : CellIndex::Zero(), T_world_sensor.translation());
+  for (int w = 0; w < 3; ++w) {
+    for (int k = 0; k < 3; ++k) {
+      projection_.axis_cells[k][w] = static_cast<float>(T_world_sensor.linear()(w, k) * per_m);
+    }
+    projection_.origin_cells[w] = static_cast<float>(sensor_cells(w) - corner(w));
+  }
+  projection_.cell_size_m = static_cast<float>(grid.cell_size_m());
+  projection_.limit_cells = is_in_this_world ? static_cast<float>(CellTable::kLimit - 1) : 0.0F;
+  projection_.depth_factor2 = static_cast<float>(model.depth_factor() * model.depth_factor());
+  projection_.lateral_factor2 = static_cast<float>(model.lateral_factor() * model.lateral_factor());
+}
+
+void Assigner::Pass::read(UncertainGrid& grid, const DepthScan& scan, simd::PieceCounts& counts) {
+  const PinholeIntrinsics& k = scan.intrinsics;
+  const auto width = static_cast<std::size_t>(k.width);
+  ray_x_.resize(width);
+  for (std::size_t u = 0; u < width; ++u) ray_x_[u] = static_cast<float>((static_cast<double>(u) - k.cx) / k.fx);
+  const DepthLimits limits(sensor_, scan.depth_scale_m);
+  simd::DepthPiece piece;
+  piece.depth_scale_m = static_cast<float>(scan.depth_scale_m);
+  piece.nearest = limits.nearest;
+  piece.farthest = limits.farthest;
+  for (int v = 0; v < k.height; ++v) {
+    piece.ray_y = static_cast<float>((v - k.cy) / k.fy);
+    for (std::size_t begin = 0; begin < width; begin += simd::kChunkPoints) {
+      piece.depth = scan.depth.data() + static_cast<std::size_t>(v) * width + begin;
+      piece.ray_x = ray_x_.data() + begin;
+      piece.size = std::min(simd::kChunkPoints, width - begin);
+      kernels_.project_depth(projection_, piece, chunk_, counts);
+      assign_chunk(grid);
+    }
+  }
+}
+
+void Assigner::Pass::read(UncertainGrid& grid, const PointScan& scan, simd::PieceCounts& counts) {
+  simd::CloudPiece piece;
+  piece.min_range_m = not_below(sensor_.min_range_m);
+  piece.max_range_m = not_above(sensor_.max_range_m);
+  const std::size_t size = scan.xyz_m.size() / 3;
+  for (std::size_t begin = 0; begin < size; begin += simd::kChunkPoints) {
+    piece.xyz_m = scan.xyz_m.data() + 3 * begin;
+    piece.sigma_m = scan.sigma_m.empty() ? nullptr : scan.sigma_m.data() + 3 * begin;
+    piece.size = std::min(simd::kChunkPoints, size - begin);
+    kernels_.project_cloud(projection_, piece, chunk_, counts);
+    assign_chunk(grid);
+  }
+}
+
+void Assigner::Pass::assign_chunk(UncertainGrid& grid) {
+  constexpr std::size_t kPad = simd::PointChunk::kPad;
+  const std::size_t count = kernels_.find_runs(chunk_, begins_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    simd::Run& run = runs_[i];
+    run = {begins_[i], begins_[i + 1]};
+    const std::size_t at = kPad + run.begin;
+    if (chunk_.cell[0][at] == simd::PointChunk::kNoCell) continue;
+    near_.find_candidates(grid, {chunk_.cell[0][at], chunk_.cell[1][at], chunk_.cell[2][at]}, run);
+  }
+  kernels_.assign(chunk_, runs_.data(), count, near_.candidates());
+  kernels_.accumulate(chunk_, near_.accumulators());
+}
+
+void Assigner::Pass::collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor,
+                             std::vector<CellChange>& changes) const {
+  const Eigen::Matrix3d R_squared = R_world_sensor.cwiseAbs2();
+  const double size_m = grid.cell_size_m();
+  const double size2 = size_m * size_m;
+  for (std::size_t target = 0; target < near_.size(); ++target) {
+    const simd::Accumulator& accumulator = near_.accumulator(target);
+    if (accumulator.count == 0) continue;
+    const CellRef ref = near_.cell(target);
+    grid.writable(ref).working = static_cast<std::uint32_t>(changes.size());
+    CellChange& change = changes.emplace_back();
+    change.cell = ref;
+    std::array<double, simd::kSumCount> sum;
+    kernels_.total(accumulator, sum.data());
+    Moments& points = change.added.points;
+    points.weight = accumulator.count;
+    points.first = size_m * Eigen::Vector3d(sum[0], sum[1], sum[2]);
+    for (std::size_t i = 0; i < 6; ++i) points.second.e[i] = size2 * sum[3 + i];
+    change.added.error_m2 = R_squared * Eigen::Vector3d(sum[9], sum[10], sum[11]);
+  }
+}
+
+Assigner::Assigner(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid)
+    : pass_(std::make_unique<Pass>(core, sensor, grid)) {}
+Assigner::~Assigner() = default;
 
 PointCounts Assigner::assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
   changes_.clear();
-  own_of_change_.clear();
-  own_.clear();
-  candidates_.clear();
-  R_squared_ = T_world_sensor.rotation().cwiseAbs2();
-  const PointCounts counts = std::visit([&](const auto& s) { return assign_points(grid, s, T_world_sensor); }, scan);
-
-  std::uint32_t kept = 0;
+  const PointCounts counts = pass_->run(grid, scan, T_world_sensor);
+  pass_->collect(grid, T_world_sensor.linear(), changes_);
   for (CellChange& change : changes_) {
-    Cell& cell = grid.writable(change.cell);
-    cell.working = Cell::kNotWorking;
-    if (change.added.count() <= 0.0) continue;  // all points that lie in it went to its neighbours
-    cell.working = kept;
     // One view direction for a cell and scan: it turns by a fraction of a degree within the cell.
     const Eigen::Vector3d mean_m = grid.geometric_centre_m(change.cell) + change.added.points.mean();
     const Eigen::Vector3d view = (T_world_sensor.translation() - mean_m).normalized() * change.added.count();
     change.added.view = view.cast<float>();
-    changes_[kept++] = change;
   }
-  changes_.resize(kept);
   return counts;
 }
 
 void Assigner::finish(UncertainGrid& grid) {
   for (const CellChange& change : changes_) grid.writable(change.cell).working = Cell::kNotWorking;
-}
-
-template <class ScanType>
-PointCounts Assigner::assign_points(UncertainGrid& grid, const ScanType& scan,
-                                    const Eigen::Isometry3d& T_world_sensor) {
-  const double inverse_size = 1.0 / grid.cell_size_m();
-  const double quarter_edge_m = 0.25 * grid.cell_size_m();
-  const Eigen::Vector3d origin = T_world_sensor.translation();
-  Run run;
-  CellIndex last_index = CellIndex::Constant(std::numeric_limits<int>::min());
-  std::uint32_t last_own = 0;
-  std::size_t too_far = 0;
-
-  PointCounts counts = for_each_point(scan, T_world_sensor, sensor_, [&](const UncertainPoint& point) {
-    const Eigen::Vector3d scaled = point.p_world_m * inverse_size;
-    if (!(scaled.cwiseAbs().maxCoeff() < kMaxCoordinateCells)) {
-      ++too_far;
-      return;
-    }
-    const CellIndex index(floor_to_int(scaled.x()), floor_to_int(scaled.y()), floor_to_int(scaled.z()));
-    if (index != last_index) {
-      last_own = own_cell(grid, index, origin);
-      last_index = index;
-    }
-    OwnCell& own = own_[last_own];
-    const Eigen::Vector3d q = point.p_world_m - own.centre_m;
-    const std::uint32_t eighth = eighth_of(q);
-    if (own.eighths[eighth].count == 0) list_eighth(own, eighth, quarter_edge_m);
-    const CellRef winner = nearest(own.eighths[eighth], q).cell;
-
-    if (run.n == 0.0 || run.own != last_own || run.cell != winner) {
-      if (run.n > 0.0) flush(grid, run);
-      run = {last_own, winner, 1.0, q, Symmetric3::outer(q), point.variance_sensor_m2};
-      return;
-    }
-    run.n += 1.0;
-    run.first_m += q;
-    const Symmetric3 square = Symmetric3::outer(q);
-    for (std::size_t i = 0; i < 6; ++i) run.second_m2.e[i] += square.e[i];
-    run.variance_sensor_m2 += point.variance_sensor_m2;
-  });
-  if (run.n > 0.0) flush(grid, run);
-  counts.mapped -= too_far;
-  counts.out_of_range += too_far;
-  return counts;
-}
-
-const Assigner::Candidate& Assigner::nearest(Range range, const Eigen::Vector3d& q_m) const {
-  const Candidate* best = &candidates_[range.first];
-  if (range.count == 1) return *best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Candidate* c = best; c != &candidates_[range.first] + range.count; ++c) {
-    // Eq. 7 without the terms that are the same for all candidates.
-    const double dx = q_m.x() - c->x;
-    const double dy = q_m.y() - c->y;
-    const double dz = q_m.z() - c->z;
-    const double distance = dx * dx + dy * dy + dz * dz + c->bias;
-    if (distance >= least) continue;
-    least = distance;
-    best = c;
-  }
-  return *best;
-}
-
-std::uint32_t Assigner::own_cell(UncertainGrid& grid, const CellIndex& index, const Eigen::Vector3d& origin_m) {
-  const CellRef ref = grid.find_or_add(index);
-  const std::uint32_t change = working(grid, ref);
-  if (own_of_change_[change] >= 0) return static_cast<std::uint32_t>(own_of_change_[change]);
-
-  OwnCell own;
-  own.centre_m = grid.geometric_centre_m(index);
-  list_candidates(grid, own, ref, origin_m);
-  own_of_change_[change] = static_cast<std::int32_t>(own_.size());
-  own_.push_back(own);
-  return static_cast<std::uint32_t>(own_.size() - 1);
-}
-
-void Assigner::list_candidates(const UncertainGrid& grid, OwnCell& own, CellRef ref, const Eigen::Vector3d& origin_m) {
-  own.all.first = static_cast<std::uint32_t>(candidates_.size());
-  if (grid.cell(ref).sums.count() <= 0.0) {
-    candidates_.push_back({0.0, 0.0, 0.0, 0.0, ref});
-    own.all.count = 1;
-    own.eighths.fill(own.all);
-    return;
-  }
-  const double half = 0.5 * grid.cell_size_m();
-  const Eigen::Vector3f view = (origin_m - own.centre_m).cast<float>();
-  grid.for_each_neighbour(ref, 1, [&](CellRef other) {
-    const Cell& cell = grid.cell(other);
-    if (cell.sums.count() <= 0.0) return;
-    // The faces of a thin wall: a cell that was seen from the other side does not attract these points.
-    if (config_.view_side && other != ref && cell.sums.view.dot(view) < 0.0F) return;
-    const CentreStatistics statistics{cell.sums.count(), cell.sums.points.first, cell.sums.error_m2};
-    Eigen::Vector3d centre = expected_centre(statistics);
-    if (config_.clamp_centres) centre = centre.cwiseMax(-half).cwiseMin(half);
-    centre += grid.geometric_centre_m(other) - own.centre_m;
-    candidates_.push_back({centre.x(), centre.y(), centre.z(), centre_variance(statistics), other});
-  });
-  own.all.count = static_cast<std::uint32_t>(candidates_.size()) - own.all.first;
-}
-
-void Assigner::list_eighth(OwnCell& own, std::uint32_t eighth, double quarter_edge_m) {
-  const auto side = [&](std::uint32_t bit) { return (eighth & bit) != 0 ? quarter_edge_m : -quarter_edge_m; };
-  own.eighths[eighth] = without_losers(own.all, {side(1), side(2), side(4)}, quarter_edge_m);
-}
-
-Assigner::Range Assigner::without_losers(Range range, const Eigen::Vector3d& middle_m, double half_edge_m) {
-  // The difference of two candidates' distances is affine in the point: who loses to another on all eight corners of a
-  // box loses everywhere in it. The other is the winner at the middle, which strikes out nearly all that can be.
-  const auto at_middle = [&](const Candidate& c) {
-    return (middle_m - Eigen::Vector3d(c.x, c.y, c.z)).squaredNorm() + c.bias;
-  };
-  const Candidate winner = nearest(range, middle_m);
-  const double least = at_middle(winner);
-  const auto first = static_cast<std::uint32_t>(candidates_.size());
-  for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
-    const Candidate c = candidates_[i];
-    // distance(c) - distance(winner) is least where each coordinate pulls hardest towards c.
-    const double pull = std::abs(c.x - winner.x) + std::abs(c.y - winner.y) + std::abs(c.z - winner.z);
-    if (at_middle(c) - least - 2.0 * half_edge_m * pull <= 0.0) candidates_.push_back(c);
-  }
-  return {first, static_cast<std::uint32_t>(candidates_.size()) - first};
-}
-
-std::uint32_t Assigner::working(UncertainGrid& grid, CellRef ref) {
-  Cell& cell = grid.writable(ref);
-  if (cell.working == Cell::kNotWorking) {
-    cell.working = static_cast<std::uint32_t>(changes_.size());
-    changes_.push_back({ref, {}});
-    own_of_change_.push_back(-1);
-  }
-  return cell.working;
-}
-
-void Assigner::flush(UncertainGrid& grid, const Run& run) {
-  CellSums& added = changes_[working(grid, run.cell)].added;
-  const Eigen::Vector3d shift_m = own_[run.own].centre_m - grid.geometric_centre_m(run.cell);
-  added.points.add(Moments{run.n, run.first_m, run.second_m2}, 1.0, shift_m);
-  added.error_m2 += R_squared_ * run.variance_sensor_m2;
 }
 
 }  // namespace planemap

@@ -38,7 +38,7 @@ class Mapper::Impl {
       : config_(config),
         epoch_(epoch),
         grid_(config.grid.cell_size_m),
-        assigner_(config.sensor, config.grid),
+        assigner_(config.core, config.sensor, config.grid),
         normals_(config.normals),
         local_(config.grid, config.normals, config.planes),
         planes_(config.grid, config.planes) {}

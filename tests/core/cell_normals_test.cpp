@@ -85,7 +85,7 @@ TEST(MinMaxDeviation, IsInfiniteForALine) {
 /// A grid that holds `scans` looks at the walls from a place.
 UncertainGrid mapped(const std::vector<testing::Wall>& walls, const Eigen::Isometry3d& T, int scans = 3) {
   UncertainGrid grid(GridConfig{}.cell_size_m);
-  Assigner assigner(SensorConfig{}, GridConfig{});
+  Assigner assigner(CoreConfig{}, SensorConfig{}, GridConfig{});
   for (int i = 0; i < scans; ++i) {
     assigner.assign(grid, testing::render(walls, T, static_cast<std::uint64_t>(i)), T);
     for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);
@@ -144,7 +144,7 @@ TEST(NormalEstimator, CentresFitIsTotalLeastSquaresOverTheVirtualCentres) {
 TEST(NormalEstimator, KeepsTheTwoFacesOfAThinWallApart) {
   // Faces at x = 2 and x = 2.1, each seen from its side only.
   UncertainGrid grid(GridConfig{}.cell_size_m);
-  Assigner assigner(SensorConfig{}, GridConfig{});
+  Assigner assigner(CoreConfig{}, SensorConfig{}, GridConfig{});
   for (const double side : {-1.0, 1.0}) {
     const Eigen::Isometry3d T = testing::looking({2.05 + 1.5 * side, 0.02, 0.03}, {2.05, 0.02, 0.03});
     const std::vector<testing::Wall> face = {{Vector3d(side, 0, 0), -side * (2.05 + 0.05 * side)}};

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 /// The steps of Fig. 3 up to the local planes, on one look at the walls.
 struct OneScan {
   OneScan(const std::vector<testing::Wall>& walls, const Eigen::Isometry3d& T, const MapperConfig& config)
-      : grid(config.grid.cell_size_m), assigner(config.sensor, config.grid) {
+      : grid(config.grid.cell_size_m), assigner(config.core, config.sensor, config.grid) {
     assigner.assign(grid, testing::render(walls, T, 1), T);
     NormalEstimator normals(config.normals);
     for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);

@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 #include <planemap/fields.hpp>
+#include <planemap/simd_target.hpp>
 #include <type_traits>
 
 namespace planemap {
@@ -13,6 +14,21 @@ concept MaybeConst = std::is_same_v<std::remove_const_t<T>, S>;
 // Each struct lists its settings once, in visit_fields(config, visit): visit(info, value) for numbers, flags and words,
 // visit(info, value, choices) for enumerations. Reading, printing and checking a configuration are all made from that
 // list.
+
+/// How the method is computed; none of it changes what is computed.
+struct CoreConfig {
+  SimdTarget simd = SimdTarget::kAuto;
+};
+
+template <MaybeConst<CoreConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"simd", "instruction set; the same one gives the same bytes"}, c.simd,
+        std::initializer_list<Choice<SimdTarget>>{{"auto", SimdTarget::kAuto},
+                                                  {"avx2", SimdTarget::kAvx2},
+                                                  {"sse4", SimdTarget::kSse4},
+                                                  {"neon", SimdTarget::kNeon},
+                                                  {"scalar", SimdTarget::kScalar}});
+}
 
 /// Errors and limits of a Kinect-like depth sensor; Khoshelham and Elberink, Sensors 12(2), 2012.
 struct SensorConfig {
@@ -161,6 +177,7 @@ void visit_fields(Config& c, Visit&& visit) {
 
 /// All of the method. Values have been checked by whoever read them; the mapper asserts no more than their ranges.
 struct MapperConfig {
+  CoreConfig core;
   SensorConfig sensor;
   GridConfig grid;
   NormalConfig normals;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <planemap/block.hpp>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -46,8 +47,8 @@ class UncertainGrid {
   /// The cell's virtual centre, Eq. 1: E[C_u] = L / n, world frame. @pre the cell has points
   Eigen::Vector3d virtual_centre_m(CellRef ref) const { return geometric_centre_m(ref) + cell(ref).sums.points.mean(); }
 
-  /// Calls visit(CellRef) for each stored cell at most `depth` steps away, 26-connected (Definition 2), the cell itself
-  /// included.
+  /// Calls visit(CellRef), or visit(CellRef, step) with the step from the cell, for each stored cell at most `depth`
+  /// steps away, 26-connected (Definition 2), the cell itself included.
   template <class Visit>
   void for_each_neighbour(CellRef ref, int depth, Visit&& visit) const;
   /// Calls visit(CellRef) for each stored cell.
@@ -98,7 +99,13 @@ void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) co
         const std::uint32_t slot = around[static_cast<std::size_t>(towards)];
         if (slot == kNoBlock) continue;
         const int ordinal = blocks_[slot]->find(place_of(there));
-        if (ordinal >= 0) visit(CellRef{slot, static_cast<std::uint32_t>(ordinal)});
+        if (ordinal < 0) continue;
+        const CellRef found{slot, static_cast<std::uint32_t>(ordinal)};
+        if constexpr (std::is_invocable_v<Visit, CellRef, CellIndex>) {
+          visit(found, CellIndex(dx, dy, dz));
+        } else {
+          visit(found);
+        }
       }
     }
   }

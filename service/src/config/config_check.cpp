@@ -105,6 +105,9 @@ void check_gravity(MapConfig& map, ConfigProblems& problems) {
 }  // namespace
 
 void check_config(ServiceConfig& config, ConfigProblems& problems) {
+  if (!is_supported(config.mapper.core.simd)) {
+    problems.add("core.simd", "this machine does not have that instruction set; auto takes the best that it has");
+  }
   check_less("sensor", "min_range_m", config.mapper.sensor.min_range_m, "max_range_m", config.mapper.sensor.max_range_m,
              problems);
   check_gravity(config.map, problems);

@@ -172,7 +172,7 @@ void visit_fields(Config& c, Visit&& visit) {
 }
 
 struct ServiceConfig {
-  MapperConfig mapper;  ///< sections sensor, grid, normals and planes
+  MapperConfig mapper;  ///< sections core, sensor, grid, normals and planes
   MapConfig map;
   LcmConfig lcm;
   std::vector<InputConfig> inputs = {InputConfig{}};
@@ -192,6 +192,7 @@ struct SectionInfo {
 /// Calls visit(SectionInfo, struct) for each section in the file's order; inputs is a list of structs.
 template <MaybeConst<ServiceConfig> Config, class Visit>
 void visit_sections(Config& c, Visit&& visit) {
+  visit(SectionInfo{"core", "How it is computed."}, c.mapper.core);
   visit(SectionInfo{"sensor", "Errors and limits of a Kinect-like depth sensor."}, c.mapper.sensor);
   visit(SectionInfo{"grid", "The uncertain grid."}, c.mapper.grid);
   visit(SectionInfo{"normals", "Uncertain normals of cells."}, c.mapper.normals);

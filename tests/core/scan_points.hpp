@@ -7,7 +7,7 @@
 #include <planemap/scan.hpp>
 #include <vector>
 
-namespace planemap {
+namespace planemap::testing {
 
 /// One uncertain point of a scan.
 struct UncertainPoint {
@@ -15,8 +15,8 @@ struct UncertainPoint {
   Eigen::Vector3d variance_sensor_m2;  ///< squared standard errors along the sensor's axes
 };
 
-/// Calls visit(UncertainPoint) for each point of the scan that can be mapped, row by row, and returns where the others
-/// went.
+/// The points of a scan one by one, as the equations say it: the slow twin of the assignment's kernels. Calls
+/// visit(UncertainPoint) for each point that can be mapped, row by row, and returns where the others went.
 template <class Visit>
 PointCounts for_each_point(const DepthScan& scan, const Eigen::Isometry3d& T_world_sensor, const SensorConfig& config,
                            Visit&& visit);
@@ -95,4 +95,4 @@ PointCounts for_each_point(const PointScan& scan, const Eigen::Isometry3d& T_wor
   return counts;
 }
 
-}  // namespace planemap
+}  // namespace planemap::testing

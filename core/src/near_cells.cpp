@@ -1,0 +1,95 @@
+#include "near_cells.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "planemap/expected_distance.hpp"
+
+namespace planemap {
+
+void NearCells::begin(const CellIndex& base, const Eigen::Vector3d& origin_m) {
+  base_ = base;
+  origin_m_ = origin_m;
+  table_.clear();
+  cells_.clear();
+  candidates_.clear();
+}
+
+void NearCells::find_candidates(UncertainGrid& grid, const CellIndex& cell, simd::Run& run) {
+  std::uint32_t number = table_(cell.x(), cell.y(), cell.z());
+  if (number == CellTable::kNone) number = number_of(grid, grid.find_or_add(base_ + cell), cell);
+  if (cells_[number].candidate_count == 0) list_candidates(grid, number, cell);
+  run.first_candidate = cells_[number].first_candidate;
+  run.candidate_count = cells_[number].candidate_count;
+  std::copy_n(accumulators_[number].centre_cells, 3, run.centre_cells);
+}
+
+std::uint32_t NearCells::number_of(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
+  std::uint32_t& number = table_(cell.x(), cell.y(), cell.z());
+  if (number != CellTable::kNone) return number;
+  number = static_cast<std::uint32_t>(cells_.size());
+  NearCell& near = cells_.emplace_back();
+  if (accumulators_.size() < cells_.size()) accumulators_.resize(2 * cells_.size());
+  simd::Accumulator& accumulator = accumulators_[number];
+  accumulator.count = 0;
+  for (int w = 0; w < 3; ++w) accumulator.centre_cells[w] = static_cast<float>(cell(w)) + 0.5F;
+  near.ref = ref;
+  const CellSums& sums = grid.cell(ref).sums;
+  near.has_points = sums.count() > 0.0;
+  if (!near.has_points) return number;
+  const double per_m = 1.0 / grid.cell_size_m();
+  const CentreStatistics statistics{sums.count(), sums.points.first, sums.error_m2};
+  near.centre_cells = expected_centre(statistics) * per_m;
+  if (config_.clamp_centres) near.centre_cells = near.centre_cells.cwiseMax(-0.5).cwiseMin(0.5);
+  near.variance_cells2 = centre_variance(statistics) * per_m * per_m;
+  near.view = sums.view;
+  return number;
+}
+
+void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
+  rivals_.clear();
+  if (cells_[number].has_points) {
+    gather(grid, number, cell);
+    drop_losers();
+  } else {
+    rivals_.push_back({Eigen::Vector3d::Zero(), 0.0, number});
+  }
+  cells_[number].first_candidate = static_cast<std::uint32_t>(candidates_.size());
+  cells_[number].candidate_count = static_cast<std::uint32_t>(rivals_.size());
+  for (const Rival& rival : rivals_) {
+    const Eigen::Vector3f slope = (-2.0 * rival.place_cells).cast<float>();
+    candidates_.push_back({{slope.x(), slope.y(), slope.z()},
+                           static_cast<float>(rival.bias_cells2),
+                           static_cast<std::int32_t>(rival.target)});
+  }
+}
+
+void NearCells::gather(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
+  const Eigen::Vector3f view = (origin_m_ - grid.geometric_centre_m(base_ + cell)).cast<float>();
+  grid.for_each_neighbour(cells_[number].ref, 1, [&](CellRef other_ref, const CellIndex& step) {
+    const std::uint32_t target = number_of(grid, other_ref, cell + step);
+    const NearCell& other = cells_[target];
+    if (!other.has_points) return;
+    // The faces of a thin wall: a cell that was seen from the other side does not attract these points.
+    if (config_.view_side && target != number && other.view.dot(view) < 0.0F) return;
+    const Eigen::Vector3d place = other.centre_cells + step.cast<double>();
+    rivals_.push_back({place, place.squaredNorm() + other.variance_cells2, target});
+  });
+}
+
+void NearCells::drop_losers() {
+  // The difference of two rivals' distances is affine in the point: who loses to another on all eight corners of the
+  // cell loses everywhere in it. The other is the winner at the middle, which strikes out nearly all that can be.
+  const auto winner = std::min_element(rivals_.begin(), rivals_.end(),
+                                       [](const Rival& a, const Rival& b) { return a.bias_cells2 < b.bias_cells2; });
+  std::iter_swap(rivals_.begin(), winner);
+  const Rival first = rivals_.front();
+  const auto loses = [&](const Rival& rival) {
+    // distance(rival) - distance(first) is least where each coordinate pulls hardest towards the rival.
+    const double pull = (rival.place_cells - first.place_cells).lpNorm<1>();
+    return rival.bias_cells2 - first.bias_cells2 - pull > 0.0;
+  };
+  rivals_.erase(std::remove_if(rivals_.begin() + 1, rivals_.end(), loses), rivals_.end());
+}
+
+}  // namespace planemap
