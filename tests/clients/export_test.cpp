@@ -297,9 +297,8 @@ TEST(ExportMapOfAnAnswer, TakesEverythingAndFindsDown) {
   wire.planes = {plane};
   client::Cell cell;
   cell.plane_id = 11;
-  client::Map cells;
-  cells.cells = {cell};
-  const auto map = export_map_of(wire, cells);
+  wire.cells = {cell};
+  const auto map = export_map_of(wire);
   ASSERT_TRUE(map) << map.error().message;
   ASSERT_TRUE(map->gravity);
   EXPECT_EQ(*map->gravity, Eigen::Vector3d(0, -1, 0));

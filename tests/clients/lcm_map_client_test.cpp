@@ -183,6 +183,94 @@ TEST_F(LcmMapClientTest, AnAnswerThatIsGoneIsAskedForAnew) {
   EXPECT_GE(service_.requests.size(), 3u);
 }
 
+/// Answers with planes or cells, whichever is asked for, of a revision.
+class WholeMapTest : public LcmMapClientTest {
+ protected:
+  void send_page(const request_t& request, std::int64_t revision) {
+    reply_t reply = service_.page_of(request, 0, 1);
+    reply.revision = revision;
+    if (request.operation == request_t::OPERATION_CELLS) {
+      reply.planes.clear();
+      reply.n_planes = 0;
+      planemap_lcm::cell_t cell{};
+      cell.count = static_cast<std::int32_t>(revision);
+      reply.cells = {cell};
+      reply.n_cells = 1;
+    }
+    service_.send(request, reply);
+  }
+  std::vector<std::int64_t> cells_asked_for() const {
+    std::vector<std::int64_t> revisions;
+    for (const request_t& request : service_.requests) {
+      if (request.operation == request_t::OPERATION_CELLS) revisions.push_back(request.revision);
+    }
+    return revisions;
+  }
+};
+
+TEST_F(WholeMapTest, CellsAreAskedForOfThePlanesRevision) {
+  service_.answer = [&](const request_t& request) {
+    const bool newest = request.epoch == 0;  // the map goes on with each request
+    send_page(request, newest ? 40 + static_cast<std::int64_t>(service_.requests.size()) : request.revision);
+  };
+  const auto map = client_->whole_map(kLong);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->revision, 41);
+  EXPECT_EQ(map->planes.size(), 1u);
+  ASSERT_EQ(map->cells.size(), 1u);
+  EXPECT_EQ(map->cells[0].count, 41);
+  ASSERT_EQ(service_.requests.size(), 2u);
+  EXPECT_EQ(service_.requests[1].epoch, 7);
+}
+
+TEST_F(WholeMapTest, StartsOverWhereTheRevisionIsGone) {
+  service_.answer = [&](const request_t& request) {
+    if (request.operation == request_t::OPERATION_SNAPSHOT) {
+      send_page(request, 40 + static_cast<std::int64_t>(service_.requests.size()));
+    } else if (request.revision == 41) {
+      service_.send_error(request, reply_t::STATUS_GONE, "not kept any more");
+    } else {
+      send_page(request, request.revision);
+    }
+  };
+  const auto map = client_->whole_map(kLong);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->revision, 43);
+  EXPECT_EQ(map->cells.at(0).count, 43);
+  EXPECT_EQ(cells_asked_for(), (std::vector<std::int64_t>{41, 43}));
+}
+
+TEST_F(WholeMapTest, NeverMixesCellsOfAnotherRevision) {
+  service_.answer = [&](const request_t& request) {  // pays no heed to the revision, and comes to rest at 45
+    send_page(request, std::min<std::int64_t>(45, 40 + static_cast<std::int64_t>(service_.requests.size())));
+  };
+  const auto map = client_->whole_map(kLong);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->revision, 45);
+  EXPECT_EQ(map->cells.at(0).count, 45);
+}
+
+TEST_F(WholeMapTest, AMapThatIsAlwaysGoneIsIncomplete) {
+  service_.answer = [&](const request_t& request) {
+    if (request.operation == request_t::OPERATION_SNAPSHOT) return send_page(request, 41);
+    service_.send_error(request, reply_t::STATUS_GONE, "not kept any more");
+  };
+  const auto map = client_->whole_map(kShort);
+  ASSERT_FALSE(map);
+  EXPECT_EQ(map.error().kind, Error::Kind::kIncomplete) << map.error().message;
+}
+
+TEST_F(WholeMapTest, PlanesWithoutCellsAreIncomplete) {
+  service_.answer = [&](const request_t& request) {
+    if (request.operation == request_t::OPERATION_SNAPSHOT) send_page(request, 41);
+  };
+  const auto map = client_->whole_map(kShort);
+  ASSERT_FALSE(map);
+  EXPECT_EQ(map.error().kind, Error::Kind::kIncomplete);
+  EXPECT_NE(map.error().message.find("the planes came, but no cells within 0.15 s"), std::string::npos)
+      << map.error().message;
+}
+
 TEST_F(LcmMapClientTest, PagesOfTwoRevisionsAreNeverMixed) {
   service_.answer = [&](const request_t& request) {
     for (int page = 0; page < 2; ++page) {

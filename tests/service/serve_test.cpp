@@ -325,6 +325,56 @@ TEST_F(RequestAnswererTest, CellsComeInPagesAndEachCanBeAskedForAgain) {
   EXPECT_EQ((*lost.pages)[1], (*reply.pages)[1]);
 }
 
+TEST_F(RequestAnswererTest, CellsCanBeHadOfTheRevisionOfThePlanes) {
+  const auto snapshot = walls_.snapshot();
+  ask(request_for(request_t::OPERATION_SNAPSHOT), snapshot);
+  std::size_t dense = 0;
+  snapshot->for_each_cell([&](const CellView&) { ++dense; });
+  walls_.look_at(750, 1.5);  // the map goes on
+  const auto newest = walls_.snapshot();
+  ASSERT_GT(newest->revision(), snapshot->revision());
+  const auto cells_of = [&](std::int64_t epoch, std::int64_t revision, const char* channel) {
+    auto request = request_for(request_t::OPERATION_CELLS, channel);
+    request.epoch = epoch;
+    request.revision = revision;
+    return decoded<reply_t>(*ask(request, newest).pages);
+  };
+  const auto revision = static_cast<std::int64_t>(snapshot->revision());
+  for (const char* channel : {"PLANEMAP_REPLY_A", "PLANEMAP_REPLY_B"}) {  // who asked for the planes, and another
+    std::size_t cells = 0;
+    for (const auto& page : cells_of(9, revision, channel)) {
+      EXPECT_EQ(page.status, reply_t::STATUS_OK) << page.error;
+      EXPECT_EQ(page.epoch, 9);
+      EXPECT_EQ(page.revision, revision);
+      cells += page.cells.size();
+    }
+    EXPECT_EQ(cells, dense) << channel;
+  }
+  const auto newest_revision = static_cast<std::int64_t>(newest->revision());
+  EXPECT_EQ(cells_of(9, newest_revision, "PLANEMAP_REPLY_A").at(0).revision, newest_revision);
+  EXPECT_EQ(cells_of(0, 0, "PLANEMAP_REPLY_A").at(0).revision, newest_revision);
+  for (const auto& [epoch, gone] : {std::pair<std::int64_t, std::int64_t>{9, 1000}, {8, newest_revision}}) {
+    const auto pages = cells_of(epoch, gone, "PLANEMAP_REPLY_A");
+    ASSERT_EQ(pages.size(), 1u);
+    EXPECT_EQ(pages[0].status, reply_t::STATUS_GONE);
+    EXPECT_NE(pages[0].error.find("is not kept any more: ask anew"), std::string::npos) << pages[0].error;
+  }
+}
+
+TEST_F(RequestAnswererTest, CellsComeFromTheVerySnapshotOfThePlanes) {
+  const auto snapshot = walls_.snapshot();
+  ask(request_for(request_t::OPERATION_SNAPSHOT), snapshot);
+  const auto twin = walls_.snapshot();  // of the same revision; it may hold more cells
+  ASSERT_NE(twin, snapshot);
+  ASSERT_EQ(twin->revision(), snapshot->revision());
+  auto request = request_for(request_t::OPERATION_CELLS);
+  request.epoch = 9;
+  request.revision = static_cast<std::int64_t>(snapshot->revision());
+  const auto reply = ask(request, twin);
+  EXPECT_EQ(ask(request_for(request_t::OPERATION_CELLS, "PLANEMAP_REPLY_B"), snapshot).pages, reply.pages)
+      << "made once for the snapshot, and kept";
+}
+
 TEST_F(RequestAnswererTest, StatusIsOnePage) {
   const reply_t page = only_page(ask(request_for(request_t::OPERATION_STATUS), walls_.snapshot()));
   EXPECT_EQ(page.status, reply_t::STATUS_OK);

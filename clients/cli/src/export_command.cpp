@@ -27,11 +27,9 @@ ExitCode run(const ExportOptions& options) {
   }
   auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
   if (!client) return complain(client.error(), options.daemon);
-  const auto planes = (*client)->snapshot(options.daemon.timeout());
-  if (!planes) return complain(planes.error(), options.daemon);
-  const auto cells = (*client)->cells(options.daemon.timeout());
-  if (!cells) return complain(cells.error(), options.daemon);
-  const auto map = export_map_of(*planes, *cells);
+  const auto answer = (*client)->whole_map(2 * options.daemon.timeout());  // the planes, then the cells
+  if (!answer) return complain(answer.error(), options.daemon);
+  const auto map = export_map_of(*answer);
   if (!map) return complain(ExitCode::kFailed, map.error().message);
   for (const std::string& output : options.outputs) {
     if (auto written = export_to(*map, output); !written) return complain(ExitCode::kFailed, written.error().message);

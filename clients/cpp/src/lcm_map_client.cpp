@@ -41,6 +41,13 @@ std::string with_receive_buffer(const std::string& url) {
   return url + (url.find('?') == std::string::npos ? '?' : '&') + kReceiveBuffer;
 }
 
+/// What is asked for.
+struct Question {
+  std::int16_t operation = 0;
+  std::int64_t epoch = 0;  ///< 0: the newest map
+  std::int64_t revision = 0;
+};
+
 tl::unexpected<Error> no_network(std::string message) {
   return tl::make_unexpected(Error{Error::Kind::kNoNetwork, std::move(message)});
 }
@@ -75,14 +82,15 @@ class LcmMapClient::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  Expected<std::vector<reply_t>> ask(std::int16_t operation, milliseconds timeout);
+  Expected<std::vector<reply_t>> ask(const Question& question, milliseconds timeout);
+  Expected<Map> whole_map(milliseconds timeout);
   std::size_t malformed_count() const { return malformed_; }
 
  private:
   void on_reply(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
-  bool send(std::int16_t operation, std::int32_t page);
-  bool begin(std::int16_t operation);
-  bool ask_again(std::int16_t operation);
+  bool send(const Question& question, std::int32_t page);
+  bool begin(const Question& question);
+  bool ask_again(const Question& question);
   tl::unexpected<Error> gave_up(milliseconds timeout) const;
 
   std::shared_ptr<lcm::LCM> bus_;
@@ -113,33 +121,33 @@ void LcmMapClient::Impl::on_reply(const lcm::ReceiveBuffer* buffer, const std::s
   }
 }
 
-bool LcmMapClient::Impl::send(std::int16_t operation, std::int32_t page) {
+bool LcmMapClient::Impl::send(const Question& question, std::int32_t page) {
   request_t request{};
   request.utime =
       std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
           .count();
   request.request_id = collector_.request_id();
   request.reply_channel = reply_channel_;
-  request.operation = operation;
-  request.epoch = page >= 0 ? collector_.epoch() : 0;
-  request.revision = page >= 0 ? collector_.revision() : 0;
+  request.operation = question.operation;
+  request.epoch = page >= 0 ? collector_.epoch() : question.epoch;
+  request.revision = page >= 0 ? collector_.revision() : question.revision;
   request.page = page;
   return bus_->publish(options_.request_channel, &request) == 0;
 }
 
 /// Sends the request under a new id, so that pages of earlier tries can't mix with those to come.
-bool LcmMapClient::Impl::begin(std::int16_t operation) {
+bool LcmMapClient::Impl::begin(const Question& question) {
   collector_ = PageCollector(next_id_++);
   refused_ = false;
   contradicted_ = false;
-  return send(operation, -1);
+  return send(question, -1);
 }
 
 /// Nothing came for a while: the whole request again, or the pages that are missing.
-bool LcmMapClient::Impl::ask_again(std::int16_t operation) {
-  if (!collector_.any()) return begin(operation);
+bool LcmMapClient::Impl::ask_again(const Question& question) {
+  if (!collector_.any()) return begin(question);
   const auto missing = collector_.missing(kMissingAskedAtOnce);
-  return std::all_of(missing.begin(), missing.end(), [&](std::int32_t page) { return send(operation, page); });
+  return std::all_of(missing.begin(), missing.end(), [&](std::int32_t page) { return send(question, page); });
 }
 
 tl::unexpected<Error> LcmMapClient::Impl::gave_up(milliseconds timeout) const {
@@ -157,13 +165,13 @@ tl::unexpected<Error> LcmMapClient::Impl::gave_up(milliseconds timeout) const {
       Error{Error::Kind::kUnreachable, "no planemap service answered on " + options_.request_channel + within});
 }
 
-Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, milliseconds timeout) {
+Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(const Question& question, milliseconds timeout) {
   const auto not_sent = [] {
     return no_network("LCM can't send: is there a route for multicast? (ip route add 224.0.0.0/4 dev lo)");
   };
   const Clock::time_point deadline = Clock::now() + timeout;
   if (subscription_ == nullptr) return no_network("LCM can't subscribe to " + reply_channel_);
-  if (!begin(operation)) return not_sent();
+  if (!begin(question)) return not_sent();
   Clock::time_point ask_again_at = Clock::now() + options_.ask_again_after;
   while (!collector_.complete()) {
     const Clock::time_point now = Clock::now();
@@ -173,11 +181,14 @@ Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, m
       return tl::make_unexpected(
           Error{Error::Kind::kRefused, "the service refused the request: " + collector_.error().error});
     }
+    if (gone && question.epoch != 0) {  // it will not come back
+      return tl::make_unexpected(Error{Error::Kind::kGone, collector_.error().error});
+    }
     if (gone || contradicted_) {  // the map went on, or was replaced, between two pages
-      if (!begin(operation)) return not_sent();
+      if (!begin(question)) return not_sent();
       ask_again_at = now + options_.ask_again_after;
     } else if (now >= ask_again_at) {
-      if (!ask_again(operation)) return not_sent();
+      if (!ask_again(question)) return not_sent();
       ask_again_at = now + (collector_.any() ? options_.lost_page_after : options_.ask_again_after);
     }
     const auto wait = std::chrono::ceil<milliseconds>(std::min(deadline, ask_again_at) - now);
@@ -188,6 +199,29 @@ Expected<std::vector<reply_t>> LcmMapClient::Impl::ask(std::int16_t operation, m
     if (collector_.received() != before) ask_again_at = Clock::now() + options_.lost_page_after;
   }
   return collector_.take();
+}
+
+Expected<Map> LcmMapClient::Impl::whole_map(milliseconds timeout) {
+  const Clock::time_point deadline = Clock::now() + timeout;
+  const auto time_left = [&] {
+    return std::max(milliseconds(0), std::chrono::duration_cast<milliseconds>(deadline - Clock::now()));
+  };
+  const auto incomplete = [&](const char* what) {
+    return tl::make_unexpected(Error{Error::Kind::kIncomplete, what + (" within " + seconds_text(timeout))});
+  };
+  do {
+    auto map = ask({request_t::OPERATION_SNAPSHOT}, time_left()).map(map_of);
+    if (!map) return map;
+    auto cells = ask({request_t::OPERATION_CELLS, map->epoch, map->revision}, time_left()).map(map_of);
+    if (!cells && cells.error().kind == Error::Kind::kUnreachable) return incomplete("the planes came, but no cells");
+    if (!cells && cells.error().kind != Error::Kind::kGone) return cells;
+    if (cells && cells->epoch == map->epoch && cells->revision == map->revision) {
+      map->cells = std::move(cells->cells);
+      return map;
+    }
+  } while (time_left() > milliseconds(0));
+  return incomplete(
+      "the map changed faster than its planes and cells could be asked for; there were no two of one revision");
 }
 
 Expected<std::unique_ptr<LcmMapClient>> LcmMapClient::connect(const std::string& url, const LcmClientOptions& options) {
@@ -205,7 +239,7 @@ LcmMapClient::LcmMapClient(std::shared_ptr<lcm::LCM> bus, const LcmClientOptions
 LcmMapClient::~LcmMapClient() = default;
 
 Expected<Status> LcmMapClient::status(milliseconds timeout) {
-  const auto pages = impl_->ask(request_t::OPERATION_STATUS, timeout);
+  const auto pages = impl_->ask({request_t::OPERATION_STATUS}, timeout);
   if (!pages) return tl::make_unexpected(pages.error());
   for (const reply_t& page : *pages) {
     if (page.n_status == 1) return status_of(page.service_status.front());
@@ -214,11 +248,15 @@ Expected<Status> LcmMapClient::status(milliseconds timeout) {
 }
 
 Expected<Map> LcmMapClient::snapshot(milliseconds timeout) {
-  return impl_->ask(request_t::OPERATION_SNAPSHOT, timeout).map(map_of);
+  return impl_->ask({request_t::OPERATION_SNAPSHOT}, timeout).map(map_of);
 }
 
 Expected<Map> LcmMapClient::cells(milliseconds timeout) {
-  return impl_->ask(request_t::OPERATION_CELLS, timeout).map(map_of);
+  return impl_->ask({request_t::OPERATION_CELLS}, timeout).map(map_of);
+}
+
+Expected<Map> LcmMapClient::whole_map(milliseconds timeout) {
+  return impl_->whole_map(timeout);
 }
 
 std::size_t LcmMapClient::malformed_count() const {

@@ -121,19 +121,19 @@ ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
   return map;
 }
 
-Expected<ExportMap> export_map_of(const client::Map& planes, const client::Map& cells) {
+Expected<ExportMap> export_map_of(const client::Map& wire) {
   ExportMap map;
-  map.frame = planes.frame;
-  map.epoch = static_cast<std::uint64_t>(planes.epoch);
-  map.revision = static_cast<std::uint64_t>(planes.revision);
-  for (const client::Plane& wire : planes.planes) {
-    auto plane = plane_of_wire(wire);
+  map.frame = wire.frame;
+  map.epoch = static_cast<std::uint64_t>(wire.epoch);
+  map.revision = static_cast<std::uint64_t>(wire.revision);
+  for (const client::Plane& wire_plane : wire.planes) {
+    auto plane = plane_of_wire(wire_plane);
     if (!plane) return tl::make_unexpected(plane.error());
     map.planes.push_back(std::move(*plane));
   }
   map.gravity = gravity_of(map.planes);
-  map.cells.reserve(cells.cells.size());
-  std::transform(cells.cells.begin(), cells.cells.end(), std::back_inserter(map.cells), cell_of_wire);
+  map.cells.reserve(wire.cells.size());
+  std::transform(wire.cells.begin(), wire.cells.end(), std::back_inserter(map.cells), cell_of_wire);
   return map;
 }
 

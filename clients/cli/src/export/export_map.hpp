@@ -33,8 +33,7 @@ struct ExportMap {
 ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
                         const std::optional<Eigen::Vector3d>& gravity);
 
-/// From a service's answers. Which way is down is taken from its floors, tables and ceilings.
-/// @param cells  the answer with the cells, where they were asked for too
-Expected<ExportMap> export_map_of(const client::Map& planes, const client::Map& cells = {});
+/// From a service's answer. Which way is down is taken from its floors, tables and ceilings.
+Expected<ExportMap> export_map_of(const client::Map& wire);
 
 }  // namespace planemap::cli

@@ -61,13 +61,45 @@ Reply RequestAnswerer::answer(const Request& request, const std::shared_ptr<cons
     header.service_status.push_back(status());
     return all_pages(request, std::make_shared<const Pages>(encode_pages(header, {}, {}, page_bytes_, 0.0)));
   }
-  if (request.page >= 0) return lost_page(request, header);
+  return request.page >= 0 ? lost_page(request, header) : whole_answer(request, std::move(header), snapshot);
+}
+
+Reply RequestAnswerer::whole_answer(const Request& request, reply_t header,
+                                    const std::shared_ptr<const MapSnapshot>& newest) {
+  const auto snapshot = snapshot_for(request, newest);
+  if (!snapshot) return gone(request, header);
+  header.epoch = static_cast<std::int64_t>(snapshot->epoch());
+  header.revision = static_cast<std::int64_t>(snapshot->revision());
   auto pages = pages_of(request, header, snapshot);
   if (!pages) {
     return error(request, header, reply_t::STATUS_TOO_LARGE,
                  fmt::format("the map's {} cells are more than {} MiB", snapshot->cell_count(), kMaxReplyBytes >> 20));
   }
   return all_pages(request, std::move(pages));
+}
+
+/// The newest one, or that of the revision which the request names; nullptr if it is not kept any more. Snapshots of
+/// one revision have the same planes, but a later one may have more cells: what went to the asking channel comes first.
+std::shared_ptr<const MapSnapshot> RequestAnswerer::snapshot_for(
+    const Request& request, const std::shared_ptr<const MapSnapshot>& newest) const {
+  if (request.epoch == 0) return newest;
+  const auto is_meant = [&](const std::shared_ptr<const MapSnapshot>& snapshot) {
+    return static_cast<std::int64_t>(snapshot->epoch()) == request.epoch &&
+           static_cast<std::int64_t>(snapshot->revision()) == request.revision;
+  };
+  const auto own = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+    return k.channel == request.reply_channel && is_meant(k.snapshot);
+  });
+  if (own != kept_.end()) return own->snapshot;
+  if (is_meant(newest)) return newest;
+  const auto other = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return is_meant(k.snapshot); });
+  return other != kept_.end() ? other->snapshot : nullptr;
+}
+
+Reply RequestAnswerer::gone(const Request& request, const reply_t& header) const {
+  return error(
+      request, header, reply_t::STATUS_GONE,
+      fmt::format("the map of epoch {} revision {} is not kept any more: ask anew", request.epoch, request.revision));
 }
 
 Reply RequestAnswerer::lost_page(const Request& request, const reply_t& header) const {

@@ -24,8 +24,8 @@ struct Reply {
   std::string error;  ///< why it is an error reply; empty: it is none
 };
 
-/// Answers requests from a snapshot; keeps the last replies, so that lost pages can be asked for again. Not
-/// thread-safe.
+/// Answers requests from a snapshot; keeps the last replies and their snapshots, so that lost pages can be asked for
+/// again, and the cells that go with planes. Not thread-safe.
 class RequestAnswerer {
  public:
   RequestAnswerer(const ServiceConfig& config, PlaneBook& book);
@@ -48,6 +48,11 @@ class RequestAnswerer {
     std::shared_ptr<const Pages> pages;
   };
 
+  Reply whole_answer(const Request& request, planemap_lcm::reply_t header,
+                     const std::shared_ptr<const MapSnapshot>& newest);
+  std::shared_ptr<const MapSnapshot> snapshot_for(const Request& request,
+                                                  const std::shared_ptr<const MapSnapshot>& newest) const;
+  Reply gone(const Request& request, const planemap_lcm::reply_t& header) const;
   Reply lost_page(const Request& request, const planemap_lcm::reply_t& header) const;
   Reply error(const Request& request, planemap_lcm::reply_t header, std::int8_t code, std::string message) const;
   std::shared_ptr<const Pages> pages_of(const Request& request, const planemap_lcm::reply_t& header,

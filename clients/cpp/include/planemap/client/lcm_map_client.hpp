@@ -39,8 +39,12 @@ class LcmMapClient {
   Expected<Status> status(std::chrono::milliseconds timeout);
   /// All planes with their boundaries.
   Expected<Map> snapshot(std::chrono::milliseconds timeout);
-  /// All dense cells. While mapping goes on their revision is a later one than that of a snapshot before.
+  /// All dense cells. While mapping goes on their revision is a later one than that of a snapshot before: whole_map()
+  /// gives both of one revision.
   Expected<Map> cells(std::chrono::milliseconds timeout);
+  /// All planes and the dense cells of the same revision. Where the service does not keep the planes' revision until it
+  /// is asked for the cells, both are asked for anew.
+  Expected<Map> whole_map(std::chrono::milliseconds timeout);
 
   /// Messages on the reply channel that could not be read, so far.
   std::size_t malformed_count() const;

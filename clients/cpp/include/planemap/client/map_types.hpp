@@ -52,7 +52,7 @@ struct Cell {
   std::int64_t plane_id = 0;   ///< 0: none
 };
 
-/// A map at one revision; holds planes or cells, whichever was asked for.
+/// A map at one revision; holds planes, cells or both, whichever was asked for.
 struct Map {
   std::string frame;
   std::int64_t epoch = 0;
@@ -86,6 +86,7 @@ struct Error {
     kIncomplete,   ///< the service answered, but pages were still missing when time was up
     kRefused,      ///< the service answered with an error
     kMalformed,    ///< the answer contradicts itself
+    kGone,         ///< the service does not keep the revision any more; the client's calls start over then
   };
   Kind kind = Kind::kUnreachable;
   std::string message;  ///< a sentence for the person who asked
