@@ -183,6 +183,8 @@ TEST(Config, SaysWhatIsWrongWithEachKindOfValue) {
       {"publish:\n  delta_channel: POSE\n", "F:2: publish.delta_channel: 'POSE' is used by inputs.0.pose_channel, too"},
       {"sensor:\n  min_range_m: 6\n", "F:2: sensor.min_range_m: 6 must be less than max_range_m (5)"},
       {"pose:\n  buffer_s: 0.5\n", "F:2: pose.buffer_s: 0.5 must be at least max_gap_s + max_wait_s (1)"},
+      {"pose:\n  restart_s: 20\n", "F:2: pose.restart_s: 20 must be at most buffer_s (10)"},
+      {"pose:\n  jump: stop\n", "F:2: pose.jump: 'stop' is not known (allowed: continue, reset)"},
       {"pose:\n  exact_s: 0.7\n", "F:2: pose.exact_s: 0.7 must be at most max_gap_s (0.5)"},
       {"a: 1\n---\nb: 2\n", "F: configuration: more than one YAML document"},
   };

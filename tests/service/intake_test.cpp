@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "ingest/idle_reason.hpp"
 #include "ingest/kernel_drops.hpp"
@@ -76,7 +77,7 @@ TEST(PointFilter, PointsBeyondTheGridsReachAreNone) {
 }
 
 TEST(RateLimiter, ThinsThirtyToFifteenDespiteJitter) {
-  RateLimiter limiter(15.0);
+  RateLimiter limiter(15.0, 1.0);
   int passed = 0;
   for (int i = 0; i < 300; ++i) {
     const int jitter_us = (i * 7919) % 3001 - 1500;
@@ -86,7 +87,7 @@ TEST(RateLimiter, ThinsThirtyToFifteenDespiteJitter) {
 }
 
 TEST(RateLimiter, NeverExceedsTheRateForLong) {
-  RateLimiter limiter(10.0);
+  RateLimiter limiter(10.0, 1.0);
   int passed = 0;
   for (int i = 0; i < 10000; ++i) passed += limiter.passes(kSecond + i * 1000) ? 1 : 0;  // 1 kHz for 10 s
   EXPECT_GE(passed, 99);
@@ -94,12 +95,19 @@ TEST(RateLimiter, NeverExceedsTheRateForLong) {
 }
 
 TEST(RateLimiter, ZeroIsNoLimitAndAStepBackDoesNotSilence) {
-  RateLimiter none(0.0);
+  RateLimiter none(0.0, 1.0);
   EXPECT_TRUE(none.passes(1) && none.passes(1) && none.passes(2));
-  RateLimiter limiter(1.0);
+  RateLimiter limiter(1.0, 1.0);
   EXPECT_TRUE(limiter.passes(100 * kSecond));
   EXPECT_FALSE(limiter.passes(100 * kSecond + 1));
   EXPECT_TRUE(limiter.passes(5 * kSecond));
+}
+
+TEST(RateLimiter, BeginsAnewWithEachRunOfALoopedLog) {
+  RateLimiter limiter(0.1, 1.0);  // one scan in 10 s, of a log of 4 s
+  int passed = 0;
+  for (int i = 0; i < 120; ++i) passed += limiter.passes(kSecond + (i % 40) * 100000) ? 1 : 0;
+  EXPECT_EQ(passed, 3);
 }
 
 /// An intake whose scans and warnings are kept.
@@ -181,6 +189,44 @@ TEST(ScanIntake, PosesAreCountedByWhatBecameOfThem) {
   EXPECT_EQ(bench.counters.value("poses.rejected.quaternion"), 1);
 }
 
+TEST(ScanIntake, AShortLogMayBeReplayedInALoop) {
+  Bench bench;
+  for (int run = 0; run < 3; ++run) {
+    for (int i = 0; i < 20; ++i) {  // 2 s, less than the poses that are kept
+      const std::int64_t utime = 100 * kSecond + i * 100000;
+      bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(utime, i)), 0.0);
+      bench.intake.on_message("POSE", encoded(pose_message(utime, 0.01 * i)), 0.0);
+    }
+  }
+  EXPECT_EQ(bench.counters.value("poses.restarts"), 2);
+  EXPECT_EQ(bench.counters.value("poses.duplicate") + bench.counters.value("poses.out_of_order"), 0);
+  EXPECT_EQ(bench.counters.value("poses.jumps"), 0);
+  EXPECT_EQ(bench.counters.value("scans.dropped.duplicate"), 0);
+  ASSERT_EQ(bench.scans.size(), 60u);
+  for (std::size_t k = 0; k < 60; ++k) {
+    EXPECT_NEAR(bench.scans[k].T_world_sensor.translation().x(), 0.01 * static_cast<double>(k % 20), 1e-12) << k;
+  }
+}
+
+TEST(ScanIntake, AJumpIsSaidWithWhatBecomesOfTheMap) {
+  ServiceConfig config;
+  for (const auto& [jump, said] : std::map<std::string, std::string>{
+           {"continue", "the pose on POSE jumped; the map goes on, and may hold things twice"},
+           {"reset", "the pose on POSE jumped; a new map begins with the scans after it"}}) {
+    config.pose.jump = jump;
+    Bench bench(config);
+    for (const double x_m : {0.0, 5.0}) {
+      const std::int64_t utime = kSecond + std::llround(10000 * x_m);
+      bench.intake.on_message("POSE", encoded(pose_message(utime, x_m)), 0.0);
+      bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(utime, 1)), 0.0);
+    }
+    EXPECT_EQ(bench.counters.value("poses.jumps"), 1);
+    EXPECT_EQ(bench.warnings, (std::vector<std::string>{said}));
+    ASSERT_EQ(bench.scans.size(), 2u);
+    EXPECT_EQ(bench.scans[1].map_number, jump == "reset" ? 1u : 0u);
+  }
+}
+
 TEST(ScanIntake, FinishLetsNothingWait) {
   Bench bench;
   bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 0.0);
@@ -227,8 +273,86 @@ TEST(IdleReason, DamagedMessagesAreTheReasonNotSilence) {
 
 TEST(IdleReason, NoneWhileScansAreMapped) {
   const InputFacts facts = default_facts();
-  EXPECT_EQ(idle_reason(std::span(&facts, 1), MapperFacts{5, 9.0}, 10.0), "");
-  EXPECT_NE(idle_reason(std::span(&facts, 1), MapperFacts{5, 9.0}, 12.5), "");
+  MapperFacts mapper;
+  mapper.mapped = 5;
+  mapper.last_mapped_host_s = 9.0;
+  EXPECT_EQ(idle_reason(std::span(&facts, 1), mapper, 10.0), "");
+  EXPECT_NE(idle_reason(std::span(&facts, 1), mapper, 12.5), "");
+}
+
+/// Scans that get their poses and reach the mapper.
+InputFacts facts_of_a_sound_input() {
+  InputFacts facts = default_facts();
+  facts.scans = facts.poses = facts.handed_on = 100;
+  facts.last_scan_host_s = facts.last_pose_host_s = facts.last_handed_on_host_s = 19.9;
+  facts.last_problem = "no pose within 0.5 s of scan at 11.000000; last pose on POSE at 10.000000";
+  facts.last_problem_host_s = 2.0;  // long ago
+  return facts;
+}
+
+TEST(IdleReason, NamesTheMapperWhereScansReachIt) {
+  const InputFacts facts = facts_of_a_sound_input();
+  const auto reason = [&](const MapperFacts& mapper) { return idle_reason(std::span(&facts, 1), mapper, 20.0); };
+  MapperFacts mapper;
+  mapper.mapped = 3;
+  mapper.last_mapped_host_s = 8.0;
+  EXPECT_EQ(reason(mapper), "the scans on PLANEMAP_SCAN are on their way to the mapper");
+  mapper.queued = 4;
+  mapper.queue_capacity = 16;
+  mapper.busy_since_host_s = 19.0;
+  EXPECT_EQ(reason(mapper), "4 scans wait for the mapper");
+  mapper.busy_since_host_s = 8.0;
+  EXPECT_EQ(reason(mapper), "the mapper has been busy with one scan for 12 s; 4 scans wait for the mapper");
+  mapper.dropped_from_full_queue = 7;
+  mapper.last_dropped_host_s = 19.5;
+  EXPECT_EQ(reason(mapper),
+            "the mapper has been busy with one scan for 12 s; "
+            "the mapper cannot keep up: 7 scans were dropped from its full queue (queue.scans = 16)");
+  mapper = MapperFacts{};
+  mapper.last_error = "the scan at utime 5 could not be mapped: no memory";
+  mapper.last_error_host_s = 19.0;
+  EXPECT_EQ(reason(mapper), mapper.last_error);
+}
+
+TEST(IdleReason, NamesBothAMapperThatHangsAndAnInputWithoutPoses) {
+  std::vector<InputFacts> facts = {facts_of_a_sound_input(), default_facts()};
+  facts[1].channel = "BACK";
+  facts[1].pose_channel = "BACK_POSE";
+  facts[1].scans = 5;
+  facts[1].last_scan_host_s = 19.9;
+  MapperFacts mapper;
+  mapper.queued = 2;
+  EXPECT_EQ(idle_reason(facts, mapper, 20.0), "2 scans wait for the mapper; no pose on BACK_POSE yet");
+}
+
+TEST(IdleReason, CountsOnlyScansThatDoWaitForAPose) {
+  InputFacts facts = facts_of_a_sound_input();
+  facts.last_handed_on_host_s = 2.0;
+  facts.waiting = 3;
+  EXPECT_EQ(idle_reason(std::span(&facts, 1), MapperFacts{}, 20.0), "3 scans on PLANEMAP_SCAN wait for a pose on POSE");
+  facts.waiting = 0;
+  facts.last_left_out = "the same scan comes on PLANEMAP_SCAN again and again";
+  facts.last_left_out_host_s = 19.0;
+  EXPECT_EQ(idle_reason(std::span(&facts, 1), MapperFacts{}, 20.0), facts.last_left_out);
+}
+
+TEST(ScanIntake, FactsSayWhatReachesTheMapperAndWhatIsLeftOut) {
+  ServiceConfig config;
+  config.inputs[0].max_rate_hz = 0.5;
+  Bench bench(config);
+  bench.intake.on_message("POSE", encoded(pose_message(kSecond)), 4.0);
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 5.0);
+  InputFacts facts = bench.intake.facts().at(0);
+  EXPECT_EQ(facts.handed_on, 1);
+  EXPECT_EQ(facts.last_handed_on_host_s, 5.0);
+  EXPECT_EQ(facts.last_left_out, "");
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 6.0);
+  EXPECT_EQ(bench.intake.facts().at(0).last_left_out, "the same scan comes on PLANEMAP_SCAN again and again");
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond + 1, 2)), 7.0);
+  facts = bench.intake.facts().at(0);
+  EXPECT_EQ(facts.last_left_out, "max_rate_hz = 0.5 lets no scan on PLANEMAP_SCAN pass yet");
+  EXPECT_EQ(facts.last_left_out_host_s, 7.0);
+  EXPECT_EQ(facts.handed_on, 1);
 }
 
 TEST(IdleReason, NamesEveryInput) {

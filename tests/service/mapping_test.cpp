@@ -10,6 +10,7 @@
 #include "ingest/scan_intake.hpp"
 #include "mapping/mapping_service.hpp"
 #include "mapping/scan_queue.hpp"
+#include "serve/status_board.hpp"
 #include "wire_messages.hpp"
 
 namespace planemap::service {
@@ -166,6 +167,107 @@ TEST(MappingService, ReadersAndTheMapperDoNotDisturbEachOther) {
   is_done = true;
   for (auto& reader : readers) reader.get();
   EXPECT_EQ(counters.value("scans.mapped"), 60);
+}
+
+RegisteredScan wall_scan_of_map(std::uint64_t map_number, std::int64_t utime) {
+  RegisteredScan scan = wall_scan(utime);
+  scan.map_number = map_number;
+  return scan;
+}
+
+TEST(MappingService, AScanOfTheNextMapBeginsItInAGreaterEpoch) {
+  Counters counters;
+  ServiceConfig config;
+  config.queue.scans = 1000;
+  std::promise<void> all_mapped;
+  std::vector<std::shared_ptr<const MapSnapshot>> snapshots;  // of the mapper's thread until all are mapped
+  MappingService* service = nullptr;
+  std::promise<void> is_set;
+  auto set = is_set.get_future().share();
+  MappingService mapping(config, 77, counters, [&] {
+    set.wait();
+    snapshots.push_back(service->snapshot());
+    if (snapshots.size() == 5) all_mapped.set_value();
+  });
+  service = &mapping;
+  is_set.set_value();
+  std::int64_t utime = kSecond;
+  for (const std::uint64_t map_number : {0, 0, 0, 1, 1}) {
+    counters.scan_received();
+    mapping.push(wall_scan_of_map(map_number, ++utime));
+  }
+  all_mapped.get_future().wait();
+  std::vector<std::uint64_t> epochs;
+  std::vector<std::uint64_t> points;
+  for (const auto& snapshot : snapshots) {
+    epochs.push_back(snapshot->epoch());
+    ASSERT_EQ(snapshot->planes().size(), 1u);
+    points.push_back(snapshot->planes()[0]->point_count);
+  }
+  EXPECT_EQ(epochs, (std::vector<std::uint64_t>{77, 77, 77, 78, 78}));
+  EXPECT_EQ(points[3], points[0]) << "the new map holds its first scan and nothing of the old one";
+  EXPECT_EQ(points[4], points[1]);
+  EXPECT_EQ(counters.value("map.resets"), 1);
+  EXPECT_EQ(counters.value("scans.mapped"), 5);
+}
+
+TEST(MappingService, ANewMapBeginsThoughItsFirstScanFellOutOfTheQueue) {
+  Counters counters;
+  ServiceConfig config;
+  config.queue.scans = 1;
+  std::promise<void> first_mapped;
+  std::promise<void> last_mapped;
+  std::promise<void> may_go_on;
+  auto go_on = may_go_on.get_future().share();
+  int mapped = 0;
+  MappingService mapping(config, 77, counters, [&] {
+    if (++mapped == 2) return last_mapped.set_value();
+    first_mapped.set_value();
+    go_on.wait();
+  });
+  const auto push = [&](std::uint64_t map_number, std::int64_t utime) {
+    counters.scan_received();
+    mapping.push(wall_scan_of_map(map_number, utime));
+  };
+  push(0, kSecond);
+  first_mapped.get_future().wait();
+  push(1, kSecond + 1);
+  push(1, kSecond + 2);  // the one before has to go
+  may_go_on.set_value();
+  last_mapped.get_future().wait();
+  EXPECT_EQ(mapping.snapshot()->epoch(), 78u);
+  EXPECT_EQ(counters.value("map.resets"), 1);
+  EXPECT_EQ(counters.value("scans.dropped.queue_full"), 1);
+}
+
+TEST(StatusBoard, SaysThatTheMapperCannotKeepUpWhereItsQueueIsFull) {
+  Counters counters;
+  ServiceConfig config;
+  config.queue.scans = 2;
+  std::promise<void> first_mapped;
+  std::promise<void> may_go_on;
+  auto go_on = may_go_on.get_future().share();
+  std::once_flag once;
+  MappingService mapping(config, 1, counters, [&] {
+    std::call_once(once, [&] { first_mapped.set_value(); });
+    go_on.wait();
+  });
+  ScanIntake intake(
+      config, counters, [&](RegisteredScan&& scan) { mapping.push(std::move(scan)); }, [](const std::string&) {});
+  const auto send = [&](int i) {
+    const std::int64_t utime = kSecond + i * 33333;
+    intake.on_message("POSE", encoded(pose_message(utime)), steady_now_s());
+    intake.on_message("PLANEMAP_SCAN", encoded(wall_message(utime, i)), steady_now_s());
+  };
+  send(0);
+  first_mapped.get_future().wait();  // and the mapper stands still
+  for (int i = 1; i <= 5; ++i) send(i);
+  StatusBoard board(intake, mapping, counters);
+  // As long after the scan that was mapped as makes it idle: the others were dropped later.
+  const double idle_from_s = mapping.stats(steady_now_s()).last_mapped_host_s + kIdleAfterS + 1e-6;
+  EXPECT_EQ(board.status(idle_from_s, 0).idle_reason,
+            "the mapper cannot keep up: 3 scans were dropped from its full queue (queue.scans = 2)");
+  may_go_on.set_value();
 }
 
 TEST(MappingService, StopCountsWhatWasStillWaiting) {

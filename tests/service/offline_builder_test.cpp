@@ -63,6 +63,38 @@ TEST(OfflineBuilder, MapsFramesAtTheirPoses) {
   EXPECT_EQ(builder.counters().at("scans.mapped"), 1);
 }
 
+TEST(OfflineBuilder, AJumpBeginsANewMapWhereItIsToldTo) {
+  ServiceConfig config;
+  const auto build = [&] {
+    auto builder = std::make_unique<OfflineBuilder>(config, 5);
+    for (int i = 0; i < 10; ++i) {
+      const std::int64_t utime = kSecond + i * 66667;
+      builder->add_event("POSE", encoded(pose_message(utime, i < 7 ? 0.0 : 20.0)));
+      builder->add_event("PLANEMAP_SCAN", encoded(wall_message(utime, i)));
+    }
+    builder->finish();
+    return builder;
+  };
+  const auto going_on = build();
+  EXPECT_EQ(going_on->counters().at("poses.jumps"), 1);
+  EXPECT_EQ(going_on->counters().count("map.resets"), 0u);
+  EXPECT_EQ(going_on->snapshot()->epoch(), 5u);
+  EXPECT_EQ(going_on->snapshot()->planes().size(), 2u) << "the wall is there twice";
+  config.pose.jump = "reset";
+  const auto first = build();
+  const auto second = build();
+  EXPECT_EQ(first->counters().at("map.resets"), 1);
+  EXPECT_EQ(first->counters().at("scans.mapped"), 10);
+  for (const auto& builder : {first.get(), second.get()}) {
+    const auto snapshot = builder->snapshot();
+    EXPECT_EQ(snapshot->epoch(), 6u);
+    ASSERT_EQ(snapshot->planes().size(), 1u);
+    EXPECT_NEAR(snapshot->planes()[0]->centroid_m.x(), 20.0, 0.05);
+    EXPECT_LE(snapshot->planes()[0]->point_count, 3u * 4800u);
+  }
+  EXPECT_EQ(first->snapshot()->planes()[0]->covariance, second->snapshot()->planes()[0]->covariance);
+}
+
 TEST(OfflineBuilder, TheSameCallsGiveTheSameMap) {
   const auto build = [] {
     auto builder = std::make_unique<OfflineBuilder>(ServiceConfig{}, 5);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numbers>
 
 namespace planemap::service {
@@ -88,7 +89,7 @@ TEST(PoseBuffer, AFloodOfPosesIsBounded) {
   EXPECT_EQ(poses.insert(pose_at(kSecond, 0.0)), PoseInsert::kTooOld);
 }
 
-TEST(PoseBuffer, AStepBackBeyondTheHistoryIsOneRestart) {
+TEST(PoseBuffer, AStepBackBeyondALateArrivalIsOneRestart) {
   PoseBuffer poses{PoseConfig{}};
   poses.insert(pose_at(100 * kSecond, 0.0));
   poses.insert(pose_at(100 * kSecond + 100000, 0.0));
@@ -96,6 +97,46 @@ TEST(PoseBuffer, AStepBackBeyondTheHistoryIsOneRestart) {
   EXPECT_EQ(poses.size(), 1u);
   EXPECT_EQ(poses.insert(pose_at(5 * kSecond + 100000, 2.0)), PoseInsert::kAppended);
   EXPECT_EQ(poses.find(5 * kSecond + 50000).match, PoseMatch::kFound);
+}
+
+TEST(PoseBuffer, AStepBackByASecondIsALateArrival) {
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(10 * kSecond, 1.0));
+  EXPECT_EQ(poses.insert(pose_at(9 * kSecond, 0.9)), PoseInsert::kOutOfOrder);
+  EXPECT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses.insert(pose_at(9 * kSecond - 1, 0.9)), PoseInsert::kRestarted);
+  EXPECT_EQ(poses.size(), 1u);
+}
+
+TEST(PoseBuffer, ALogShorterThanTheHistoryMayBeReplayedInALoop) {
+  PoseBuffer poses{PoseConfig{}};
+  std::map<PoseInsert, int> results;
+  for (int run = 0; run < 3; ++run) {
+    for (int i = 0; i < 40; ++i) ++results[poses.insert(pose_at(kSecond + i * 100000, 0.1 * i))];  // 4 of 10 s
+    EXPECT_EQ(poses.size(), 40u);
+  }
+  EXPECT_EQ(results, (std::map<PoseInsert, int>{{PoseInsert::kAppended, 118}, {PoseInsert::kRestarted, 2}}));
+}
+
+TEST(PoseBuffer, LookupsSayHowManyJumpsWereBefore) {
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(1000000, 0.0));
+  poses.insert(pose_at(1100000, 0.1));
+  poses.insert(pose_at(1300000, 7.0));  // a jump
+  poses.insert(pose_at(1400000, 7.1));
+  EXPECT_EQ(poses.find(1050000).jumps, 0u);
+  EXPECT_EQ(poses.find(1100900).jumps, 0u);  // near the last pose before it
+  EXPECT_EQ(poses.find(1299100).jumps, 1u);  // near the first pose behind it
+  EXPECT_EQ(poses.find(1350000).jumps, 1u);
+  // Late poses belong to their side of it.
+  EXPECT_EQ(poses.insert(pose_at(1150000, 0.2)), PoseInsert::kOutOfOrder);
+  EXPECT_EQ(poses.insert(pose_at(1250000, 7.0)), PoseInsert::kOutOfOrder);
+  EXPECT_EQ(poses.find(1125000).jumps, 0u);
+  EXPECT_EQ(poses.find(1275000).jumps, 1u);
+  EXPECT_EQ(poses.find(1200000).match, PoseMatch::kJump);
+  // A restart of the clock is no jump, and forgets none.
+  poses.insert(pose_at(100000, 0.0));
+  EXPECT_EQ(poses.find(100000).jumps, 1u);
 }
 
 TEST(PoseBuffer, NobodyKnowsWhereTheBodyWasDuringAJump) {

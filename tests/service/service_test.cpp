@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <planemap_lcm/planes_t.hpp>
@@ -25,7 +26,8 @@ constexpr std::int64_t kSecond = 1000000;
 /// A client and a sensor on the service's bus.
 class ServiceTest : public testing::Test {
  protected:
-  ServiceTest() : bus_("memq://"), service_(make_config(), bus_, /*epoch=*/1234) {
+  explicit ServiceTest(const ServiceConfig& config = make_config())
+      : bus_("memq://"), service_(config, bus_, /*epoch=*/1234) {
     bus_.subscribe("PLANEMAP_STATUS", &ServiceTest::on_status, this);
     bus_.subscribe("PLANEMAP_DELTA", &ServiceTest::on_delta, this);
     bus_.subscribe("PLANEMAP_REPLY.*", &ServiceTest::on_reply, this);
@@ -42,9 +44,9 @@ class ServiceTest : public testing::Test {
   void send(const std::string& channel, const Bytes& bytes) {
     ASSERT_EQ(bus_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())), 0);
   }
-  void send_wall(int i, std::uint16_t depth_mm = 1000) {
+  void send_wall(int i, std::uint16_t depth_mm = 1000, double x_m = 0.0) {
     const std::int64_t utime = 10 * kSecond + i * 33333;
-    send("POSE", encoded(pose_message(utime)));
+    send("POSE", encoded(pose_message(utime, x_m)));
     send("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, i, depth_mm))));
   }
   /// Handles the bus until the condition holds. @return false after half a minute
@@ -140,6 +142,62 @@ TEST_F(ServiceTest, SnapshotAndCellsArriveWhole) {
   EXPECT_EQ(lost[0].request_id, 43);
   EXPECT_EQ(lost[0].page, 1);
   EXPECT_EQ(lost[0].cells.size(), cells[1].cells.size());
+}
+
+TEST_F(ServiceTest, CellsComeOfTheRevisionOfThePlanesThoughTheMapGoesOn) {
+  send_wall(0);
+  ASSERT_TRUE(mapped(1));
+  const auto planes = ask(request_message(request_t::OPERATION_SNAPSHOT, 1)).at(0);
+  send_wall(1, 1300);
+  ASSERT_TRUE(mapped(2));
+  ASSERT_GT(static_cast<std::int64_t>(service_.snapshot()->revision()), planes.revision);
+  auto request = request_message(request_t::OPERATION_CELLS, 2);
+  request.epoch = planes.epoch;
+  request.revision = planes.revision;
+  std::int64_t cells = 0;
+  for (const auto& page : ask(request)) {
+    EXPECT_EQ(page.revision, planes.revision);
+    for (const auto& cell : page.cells) {
+      cells += cell.plane_id == planes.planes.at(0).id ? 1 : 0;
+      EXPECT_NEAR(cell.centre_m[2], 1.0, 0.05) << "the wall behind it came later";
+    }
+  }
+  EXPECT_EQ(cells, planes.planes.at(0).cell_count);
+}
+
+/// A service whose map begins anew where the pose jumps.
+class ResettingService : public ServiceTest {
+ protected:
+  ResettingService() : ServiceTest(resetting_config()) {}
+  static ServiceConfig resetting_config() {
+    ServiceConfig config = make_config();
+    config.pose.jump = "reset";
+    return config;
+  }
+};
+
+TEST_F(ResettingService, ReadersSeeANewEpochAfterAJump) {
+  for (int i = 0; i < 3; ++i) send_wall(i);
+  ASSERT_TRUE(mapped(3));
+  ASSERT_TRUE(handle_until([&] { return !deltas_.empty() && deltas_.back().n_planes > 0; }));
+  for (int i = 3; i < 5; ++i) send_wall(i, 1000, /*x_m=*/30.0);
+  ASSERT_TRUE(mapped(5));
+  ASSERT_TRUE(handle_until([&] { return deltas_.back().epoch == 1235; }));
+  const auto begin = std::find_if(deltas_.begin(), deltas_.end(), [](const auto& d) { return d.epoch == 1235; });
+  EXPECT_EQ(begin->since_revision, 0) << "the new map is told from its beginning";
+  ASSERT_EQ(begin->n_planes, 1);
+  EXPECT_NEAR(begin->planes[0].centroid_m[0], 30.0, 0.05);
+  const auto snapshot = ask(request_message(request_t::OPERATION_SNAPSHOT)).at(0);
+  EXPECT_EQ(snapshot.epoch, 1235);
+  ASSERT_EQ(snapshot.n_planes, 1) << "nothing of the old map";
+  EXPECT_NEAR(snapshot.planes[0].centroid_m[0], 30.0, 0.05);
+  EXPECT_LE(snapshot.planes[0].point_count, 2 * 4800);
+  const auto status = ask(request_message(request_t::OPERATION_STATUS)).at(0).service_status.at(0);
+  EXPECT_EQ(status.epoch, 1235);
+  EXPECT_EQ(status.plane_count, 1);
+  EXPECT_EQ(counter("poses.jumps"), 1);
+  EXPECT_EQ(counter("map.resets"), 1);
+  EXPECT_EQ(counter("scans.mapped"), 5);
 }
 
 TEST_F(ServiceTest, ErrorsAreRepliesToo) {

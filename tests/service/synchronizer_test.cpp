@@ -159,6 +159,147 @@ TEST(Synchronizer, GoesOnAfterALogRestart) {
   EXPECT_EQ(utimes(results.ready), (std::vector<std::int64_t>{50 * kSecond + 50000}));
 }
 
+TEST(Synchronizer, ScansOfAShortLogInALoopGetThePosesOfTheirRun) {
+  Synchronizer sync{ServiceConfig{}};  // poses are kept for 10 s
+  std::vector<double> x_m;
+  const auto take = [&] {
+    const auto results = sync.take_ready(0.0);
+    EXPECT_TRUE(results.dropped.empty());
+    for (const auto& scan : results.ready) x_m.push_back(scan.T_world_sensor.translation().x());
+  };
+  for (int run = 0; run < 3; ++run) {
+    for (int i = 0; i <= 20; ++i) {  // 2 s; each scan is faster than its pose, and each run is elsewhere
+      if (i < 20) sync.add_scan(0, scan_at(kSecond + i * 100000), 0.0);
+      take();
+      sync.add_pose(0, pose_at(kSecond + i * 100000, 100.0 * run + 0.01 * i));
+      take();
+    }
+  }
+  ASSERT_EQ(x_m.size(), 60u);
+  for (std::size_t k = 0; k < 60; ++k) {
+    EXPECT_NEAR(x_m[k], 100.0 * static_cast<double>(k / 20) + 0.01 * static_cast<double>(k % 20), 1e-9) << k;
+  }
+}
+
+TEST(Synchronizer, PosesMayRestartBeforeTheScansDo) {
+  Synchronizer sync{ServiceConfig{}};
+  sync.add_pose(0, pose_at(5 * kSecond, 0.0));
+  sync.add_scan(0, scan_at(5 * kSecond), 0.0);
+  EXPECT_EQ(sync.take_ready(0.0).ready.size(), 1u);
+  EXPECT_EQ(sync.add_pose(0, pose_at(2 * kSecond, 7.0)), PoseInsert::kRestarted);
+  sync.add_scan(0, scan_at(2 * kSecond), 0.0);
+  const auto results = sync.take_ready(0.0);
+  ASSERT_EQ(results.ready.size(), 1u) << "nothing to wait for";
+  EXPECT_EQ(results.ready[0].T_world_sensor.translation().x(), 7.0);
+}
+
+TEST(Synchronizer, AScanThatIsOnlyLateIsPlacedByTheHistory) {
+  Synchronizer sync{ServiceConfig{}};
+  for (int i = 0; i <= 40; ++i) sync.add_pose(0, pose_at(kSecond + i * 100000, 0.1 * i));  // to 5 s
+  sync.add_scan(0, scan_at(5 * kSecond), 0.0);
+  EXPECT_EQ(sync.take_ready(0.0).ready.size(), 1u);
+  sync.add_scan(0, scan_at(2 * kSecond), 0.0);  // or has the clock stepped back? The poses may tell.
+  EXPECT_TRUE(sync.take_ready(0.0).ready.empty());
+  sync.add_pose(0, pose_at(5 * kSecond + 100000, 4.1));
+  sync.add_scan(0, scan_at(5 * kSecond + 50000), 0.1);
+  const auto results = sync.take_ready(0.1);
+  ASSERT_EQ(results.ready.size(), 2u) << "the scans have gone on by more than a scan waits";
+  EXPECT_NEAR(results.ready[0].T_world_sensor.translation().x(), 1.0, 1e-12);
+  EXPECT_NEAR(results.ready[1].T_world_sensor.translation().x(), 4.05, 1e-12);
+  sync.add_scan(0, scan_at(3 * kSecond), 1.0);
+  EXPECT_TRUE(sync.take_ready(1.5).ready.empty());
+  EXPECT_EQ(sync.take_ready(1.51).ready.size(), 1u) << "by the host's clock, too";
+}
+
+TEST(Synchronizer, InARecordingAScanFromTheFutureDelaysTheOthersByTheirOwnTimeOnly) {
+  Synchronizer sync{ServiceConfig{}};
+  sync.add_scan(0, scan_at(4000000000 * kSecond), 0.0);
+  std::size_t ready = 0;
+  std::size_t dropped = 0;
+  for (int i = 0; i < 20; ++i) {
+    sync.add_pose(0, pose_at(10 * kSecond + i * 100000, 0.0));
+    sync.add_scan(0, scan_at(10 * kSecond + i * 100000), 0.0);  // the host's clock stands still
+    const auto results = sync.take_ready(0.0);
+    ready += results.ready.size();
+    dropped += results.dropped.size();
+  }
+  EXPECT_EQ(ready, 20u);
+  EXPECT_EQ(dropped, 1u);
+}
+
+/// Two sensors on one pose channel, where a jump begins a new map.
+ServiceConfig resetting_inputs() {
+  ServiceConfig config = three_inputs();
+  config.pose.jump = "reset";
+  return config;
+}
+
+std::vector<std::uint64_t> map_numbers(const std::vector<RegisteredScan>& scans) {
+  std::vector<std::uint64_t> numbers;
+  for (const auto& scan : scans) numbers.push_back(scan.map_number);
+  return numbers;
+}
+
+/// Poses each tenth of a second, with a jump of 5 m before the third.
+void add_poses_with_a_jump(Synchronizer& sync) {
+  for (int i = 0; i < 4; ++i) sync.add_pose(0, pose_at(kSecond + i * 100000, i < 2 ? 0.0 : 5.0));
+}
+
+TEST(Synchronizer, ScansBehindAJumpBelongToANewMap) {
+  Synchronizer sync(resetting_inputs());
+  for (const int ms : {50, 100, 150, 200, 250}) sync.add_scan(0, scan_at(kSecond + ms * 1000), 0.0);
+  add_poses_with_a_jump(sync);
+  const auto results = sync.take_ready(0.0);
+  EXPECT_EQ(map_numbers(results.ready), (std::vector<std::uint64_t>{0, 0, 1, 1}));
+  ASSERT_EQ(results.dropped.size(), 1u);
+  EXPECT_EQ(results.dropped[0].reason, "pose_jump");
+}
+
+TEST(Synchronizer, UnlessItIsToldSoAJumpBeginsNoNewMap) {
+  Synchronizer sync(three_inputs());
+  for (const int ms : {50, 250, 50}) sync.add_scan(0, scan_at(kSecond + ms * 1000), 0.0);
+  add_poses_with_a_jump(sync);
+  const auto results = sync.take_ready(0.0);
+  EXPECT_EQ(map_numbers(results.ready), (std::vector<std::uint64_t>{0, 0, 0}));
+}
+
+TEST(Synchronizer, ALateScanFromBeforeTheJumpIsNotPutIntoTheNewMap) {
+  Synchronizer sync(resetting_inputs());
+  add_poses_with_a_jump(sync);
+  sync.add_scan(0, scan_at(kSecond + 50000), 0.0);
+  sync.add_scan(0, scan_at(kSecond + 250000), 0.0);
+  EXPECT_EQ(map_numbers(sync.take_ready(0.0).ready), (std::vector<std::uint64_t>{0, 1}));
+  sync.add_scan(1, scan_at(kSecond + 60000), 0.0);  // of another sensor on the same body
+  sync.add_scan(1, scan_at(kSecond + 260000), 0.0);
+  const auto results = sync.take_ready(0.0);
+  EXPECT_EQ(map_numbers(results.ready), (std::vector<std::uint64_t>{1}));
+  ASSERT_EQ(results.dropped.size(), 1u);
+  EXPECT_EQ(results.dropped[0].reason, "old_map");
+  EXPECT_EQ(results.dropped[0].message,
+            "the scan at 1.060000 is from before a jump of the pose on POSE, where a new map has begun");
+}
+
+TEST(Synchronizer, AJumpBeforeTheFirstScanNeedsNoNewMap) {
+  Synchronizer sync(resetting_inputs());
+  add_poses_with_a_jump(sync);
+  sync.add_scan(0, scan_at(kSecond + 250000), 0.0);
+  EXPECT_EQ(map_numbers(sync.take_ready(0.0).ready), (std::vector<std::uint64_t>{0}));
+}
+
+TEST(Synchronizer, AJumpOnOnePoseChannelIsANewMapForAll) {
+  Synchronizer sync(resetting_inputs());
+  const std::size_t other = sync.stream_of(2);
+  sync.add_pose(other, pose_at(kSecond, 0.0));
+  sync.add_scan(2, scan_at(kSecond), 0.0);
+  EXPECT_EQ(map_numbers(sync.take_ready(0.0).ready), (std::vector<std::uint64_t>{0}));
+  add_poses_with_a_jump(sync);
+  sync.add_scan(0, scan_at(kSecond + 250000), 0.0);
+  EXPECT_EQ(map_numbers(sync.take_ready(0.0).ready), (std::vector<std::uint64_t>{1}));
+  sync.add_pose(other, pose_at(kSecond + 300000, 0.0));
+  sync.add_scan(2, scan_at(kSecond + 300000), 0.0);
+  EXPECT_EQ(map_numbers(sync.take_ready(0.0).ready), (std::vector<std::uint64_t>{1}));
+}
+
 TEST(Synchronizer, AScanFromTheFutureDoesNotSilenceTheSensor) {
   Synchronizer sync{ServiceConfig{}};
   sync.add_scan(0, scan_at(4000000000 * kSecond), 0.0);

@@ -124,6 +124,10 @@ void check_config(ServiceConfig& config, ConfigProblems& problems) {
     problems.add("pose.buffer_s", fmt::format("{} must be at least max_gap_s + max_wait_s ({})", config.pose.buffer_s,
                                               config.pose.max_gap_s + config.pose.max_wait_s));
   }
+  if (config.pose.restart_s > config.pose.buffer_s) {
+    problems.add("pose.restart_s",
+                 fmt::format("{} must be at most buffer_s ({})", config.pose.restart_s, config.pose.buffer_s));
+  }
   check_channel_name("publish.status_channel", config.publish.status_channel, problems);
   check_channel_name("publish.delta_channel", config.publish.delta_channel, problems);
   check_channel_name("publish.request_channel", config.publish.request_channel, problems);

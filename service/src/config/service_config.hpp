@@ -91,24 +91,33 @@ void visit_fields(Config& c, Visit&& visit) {
 
 /// How poses are found for scans.
 struct PoseConfig {
-  double buffer_s = 10.0;   ///< history that is kept; a step back by more is a restart of the clock
+  double buffer_s = 10.0;   ///< history that is kept
+  double restart_s = 1.0;   ///< a step back in time by more is a restart of the clock; messages are not late by so much
   double max_gap_s = 0.5;   ///< poses farther apart are not interpolated between
   double max_wait_s = 0.5;  ///< a scan waits so long for the pose after it
   double exact_s = 0.001;   ///< a pose this near to the scan's utime needs no other
   double jump_m = 1.0;      ///< a step between two poses above this is a jump: counted and said
   double jump_deg = 45.0;
+  std::string jump = "continue";  ///< what a jump does to the map: nothing, or "reset"
+
+  bool resets_map() const { return jump == "reset"; }
 };
 
 template <MaybeConst<PoseConfig> Config, class Visit>
 void visit_fields(Config& c, Visit&& visit) {
-  visit(FieldInfo{"buffer_s", "history of poses that is kept; a step back by more is a restart", 0.1, 600.0},
-        c.buffer_s);
+  using Words = std::initializer_list<const char*>;
+  visit(FieldInfo{"buffer_s", "history of poses that is kept", 0.1, 600.0}, c.buffer_s);
+  visit(FieldInfo{"restart_s", "a step back in time by more is a restart of the clock, by less a late arrival", 0.01,
+                  600.0},
+        c.restart_s);
   visit(FieldInfo{"max_gap_s", "poses farther apart than this are not interpolated between", 0.001, 60.0}, c.max_gap_s);
   visit(FieldInfo{"max_wait_s", "a scan waits this long for the pose after it", 0.0, 60.0}, c.max_wait_s);
   visit(FieldInfo{"exact_s", "a pose this near to a scan is its pose", 0.0, 1.0}, c.exact_s);
   visit(FieldInfo{"jump_m", "a longer step between two poses is a jump: counted and logged", 0.0, 1e6}, c.jump_m);
   visit(FieldInfo{"jump_deg", "a greater turn between two poses is a jump: counted and logged", 0.0, 180.0},
         c.jump_deg);
+  visit(FieldInfo{"jump", "after a jump the same map goes on, or a new one begins, of a new epoch"}, c.jump,
+        Words{"continue", "reset"});
 }
 
 struct QueueConfig {

@@ -8,7 +8,8 @@ namespace planemap::service {
 class RateLimiter {
  public:
   /// @param max_rate_hz  0: no limit
-  explicit RateLimiter(double max_rate_hz);
+  /// @param restart_s    a step back in time by more is a restart of the clock
+  RateLimiter(double max_rate_hz, double restart_s);
 
   /// Whether the scan of that time may pass. Over a long time the rate is kept exactly, though single intervals may be
   /// a tenth shorter: without this slack a sensor of twice the rate, with jitter, would be thinned to a third.
@@ -16,7 +17,9 @@ class RateLimiter {
 
  private:
   double period_us_;
+  double restart_us_;
   double next_us_ = 0.0;
+  double newest_us_ = 0.0;  ///< passed or not
   bool started_ = false;
 };
 

@@ -20,11 +20,13 @@ ScanIntake::ScanIntake(const ServiceConfig& config, Counters& counters, Sink sin
       sink_(std::move(sink)),
       warn_(std::move(warn)),
       max_scan_bytes_(static_cast<std::size_t>(config.limits.image_bytes)),
+      jump_resets_map_(config.pose.resets_map()),
       synchronizer_(config),
       repeats_(kWarnPeriodS) {
   for (std::size_t i = 0; i < config.inputs.size(); ++i) {
     const InputConfig& input = config.inputs[i];
-    inputs_.push_back(Input{input, PointFilter(input), RateLimiter(input.max_rate_hz), std::nullopt});
+    const RateLimiter limiter(input.max_rate_hz, config.pose.restart_s);
+    inputs_.push_back(Input{input, PointFilter(input), limiter, std::nullopt});
     scan_channels_.emplace(input.channel, i);
     pose_channels_.emplace(input.pose_channel, synchronizer_.stream_of(i));
     InputFacts facts;
@@ -78,17 +80,18 @@ void ScanIntake::take_scan(std::size_t index, std::span<const std::uint8_t> mess
     ++facts_[index].scans;
     facts_[index].last_scan_host_s = host_s;
   }
-  if (!is_wanted(index, *decoded)) return;
+  if (!is_wanted(index, *decoded, host_s)) return;
   count_filtered(inputs_[index], decoded->scan);
   synchronizer_.add_scan(index, std::move(decoded->scan), host_s);
 }
 
-bool ScanIntake::is_wanted(std::size_t index, const DecodedScan& decoded) {
+bool ScanIntake::is_wanted(std::size_t index, const DecodedScan& decoded, double host_s) {
   Input& input = inputs_[index];
   const std::int64_t utime = utime_of(decoded.scan);
   const auto before = std::exchange(input.last_scan, std::pair(utime, decoded.seq));
   if (before && before->first == utime && before->second == decoded.seq) {
-    counters_.scan_dropped("duplicate");
+    leave_out(index, "duplicate", fmt::format("the same scan comes on {} again and again", input.config.channel),
+              host_s);
     return false;
   }
   if (before && utime > before->first && decoded.seq > before->second && before->second >= 0) {
@@ -96,10 +99,20 @@ bool ScanIntake::is_wanted(std::size_t index, const DecodedScan& decoded) {
     if (lost > 0) counters_.add("scans_lost_before_arrival." + input.config.name, lost);
   }
   if (!input.limiter.passes(utime)) {
-    counters_.scan_dropped("rate_limit");
+    leave_out(
+        index, "rate_limit",
+        fmt::format("max_rate_hz = {} lets no scan on {} pass yet", input.config.max_rate_hz, input.config.channel),
+        host_s);
     return false;
   }
   return true;
+}
+
+void ScanIntake::leave_out(std::size_t index, const char* reason, std::string message, double host_s) {
+  counters_.scan_dropped(reason);
+  const std::lock_guard lock(facts_mutex_);
+  facts_[index].last_left_out = std::move(message);
+  facts_[index].last_left_out_host_s = host_s;
 }
 
 void ScanIntake::count_filtered(Input& input, Scan& scan) {
@@ -150,7 +163,9 @@ void ScanIntake::note_pose(std::size_t stream, const std::string& channel, PoseI
     case PoseInsert::kJumped:
       counters_.add("poses.jumps");
       warn_once_in_a_while("jump " + channel,
-                           fmt::format("the pose on {} jumped; the map goes on, and may hold things twice", channel),
+                           fmt::format("the pose on {} jumped; {}", channel,
+                                       jump_resets_map_ ? "a new map begins with the scans after it"
+                                                        : "the map goes on, and may hold things twice"),
                            host_s);
       break;
     case PoseInsert::kRestarted:
@@ -179,6 +194,10 @@ void ScanIntake::hand_on(SyncResults results, double host_s) {
     const std::lock_guard lock(facts_mutex_);
     for (std::size_t i = 0; i < facts_.size(); ++i)
       facts_[i].waiting = static_cast<std::int64_t>(synchronizer_.waiting(i));
+    for (const auto& scan : results.ready) {
+      ++facts_[scan.input].handed_on;
+      facts_[scan.input].last_handed_on_host_s = host_s;
+    }
   }
   for (auto& scan : results.ready) sink_(std::move(scan));
 }

@@ -59,7 +59,8 @@ class ScanIntake {
   void on_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s);
   void take_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s);
   void on_pose(std::size_t stream, const std::string& channel, std::span<const std::uint8_t> message, double host_s);
-  bool is_wanted(std::size_t index, const DecodedScan& decoded);
+  bool is_wanted(std::size_t index, const DecodedScan& decoded, double host_s);
+  void leave_out(std::size_t index, const char* reason, std::string message, double host_s);
   void count_filtered(Input& input, Scan& scan);
   void reject_scan(std::size_t index, const Rejection& rejection, double host_s);
   void note_pose(std::size_t stream, const std::string& channel, PoseInsert result, double host_s);
@@ -71,6 +72,7 @@ class ScanIntake {
   Sink sink_;
   Warn warn_;
   std::size_t max_scan_bytes_;
+  bool jump_resets_map_;
   std::vector<Input> inputs_;
   Synchronizer synchronizer_;
   std::map<std::string, std::size_t, std::less<>> scan_channels_;  ///< to the input's number

@@ -1,5 +1,6 @@
 #include "mapping/mapping_service.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -24,10 +25,12 @@ double steady_now_s() {
 
 MappingService::MappingService(const ServiceConfig& config, std::uint64_t epoch, Counters& counters,
                                std::function<void()> on_snapshot)
-    : counters_(counters),
+    : config_(config.mapper),
+      first_epoch_(epoch),
+      counters_(counters),
       on_snapshot_(std::move(on_snapshot)),
       queue_(static_cast<std::size_t>(config.queue.scans)),
-      mapper_(config.mapper, epoch),
+      mapper_(config_, epoch),
       snapshot_(mapper_.snapshot()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -42,25 +45,56 @@ void MappingService::stop() {
 }
 
 void MappingService::push(RegisteredScan&& scan) {
-  for (std::size_t dropped = queue_.push_dropping_oldest(std::move(scan)); dropped > 0; --dropped) {
-    counters_.scan_dropped("queue_full");
-  }
+  if (queue_.push_dropping_oldest(std::move(scan)) == 0) return;
+  counters_.scan_dropped("queue_full");
+  const std::lock_guard lock(mutex_);
+  ++stats_.dropped_from_full_queue;
+  stats_.last_dropped_host_s = steady_now_s();
 }
 
 void MappingService::run(const std::stop_token& stop) {
   while (auto scan = queue_.pop(stop)) {
+    note_busy(steady_now_s());
+    bool is_mapped = false;
     try {
       map(*scan);
+      is_mapped = true;
     } catch (const std::exception& e) {
       counters_.scan_dropped("mapper_error");
-      spdlog::error("the scan at utime {} could not be mapped: {}", utime_of(scan->scan), e.what());
+      note_error(fmt::format("the scan at utime {} could not be mapped: {}", utime_of(scan->scan), e.what()));
     }
+    note_busy(std::nullopt);
+    if (is_mapped && on_snapshot_) on_snapshot_();
   }
+}
+
+void MappingService::note_busy(std::optional<double> since_host_s) {
+  const std::lock_guard lock(mutex_);
+  stats_.busy_since_host_s = since_host_s;
+}
+
+void MappingService::note_error(std::string error) {
+  spdlog::error("{}", error);
+  const std::lock_guard lock(mutex_);
+  stats_.last_error = std::move(error);
+  stats_.last_error_host_s = steady_now_s();
+}
+
+/// Readers keep the old map until the first scan of the new one is in it.
+void MappingService::begin_new_map(std::uint64_t map_number) {
+  const std::uint64_t epoch = first_epoch_ + map_number;
+  mapper_ = Mapper(config_, epoch);
+  map_number_ = map_number;
+  counters_.add("map.resets");
+  const auto old = snapshot();
+  spdlog::warn("the pose jumped: a new map begins, epoch {}; that of epoch {} had {} planes, revision {}", epoch,
+               old->epoch(), old->planes().size(), old->revision());
 }
 
 void MappingService::map(const RegisteredScan& scan) {
   StageTimer timer;
   const double begin_s = steady_now_s();
+  if (scan.map_number > map_number_) begin_new_map(scan.map_number);
   const ScanReport report = mapper_.integrate(scan.scan, scan.T_world_sensor, &timer);
   auto snapshot = mapper_.snapshot(&timer);
   const double end_s = steady_now_s();
@@ -82,7 +116,6 @@ void MappingService::map(const RegisteredScan& scan) {
       "snapshot {:.2f})",
       utime_of(scan.scan), report.points.mapped, report.touched_cells, 1e3 * (end_s - begin_s), ms[0], ms[1], ms[2],
       ms[3], ms[4]);
-  if (on_snapshot_) on_snapshot_();
 }
 
 std::shared_ptr<const MapSnapshot> MappingService::snapshot() const {
@@ -96,6 +129,8 @@ MappingStats MappingService::stats(double now_host_s) const {
   {
     const std::lock_guard lock(mutex_);
     stats = stats_;
+    stats.queued = queue_.size();
+    stats.queue_capacity = queue_.capacity();
     times.assign(scan_ms_.begin(), scan_ms_.end());
     stats.rate_hz = static_cast<double>(std::count_if(mapped_at_host_s_.begin(), mapped_at_host_s_.end(),
                                                       [&](double at_s) { return at_s >= now_host_s - kRateWindowS; })) /

@@ -5,8 +5,10 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <planemap/mapper.hpp>
 #include <planemap/snapshot.hpp>
+#include <string>
 #include <thread>
 
 #include "common/counters.hpp"
@@ -23,20 +25,30 @@ struct MappingStats {
   double rate_hz = 0.0;              ///< scans in the last second
   double scan_ms_p50 = 0.0;          ///< over the last 100 scans
   double scan_ms_max = 0.0;
+  std::size_t queued = 0;                    ///< scans that wait for the mapper
+  std::size_t queue_capacity = 0;            ///< scans
+  std::optional<double> busy_since_host_s;   ///< when the mapper took the scan at hand; empty: none is
+  std::int64_t dropped_from_full_queue = 0;  ///< scans
+  double last_dropped_host_s = 0.0;
+  std::string last_error;  ///< why the last scan that could not be mapped could not; empty: none
+  double last_error_host_s = 0.0;
 };
 
 /// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
 class MappingService {
  public:
-  /// @param epoch        names this life of the map, below 2^53
-  /// @param on_snapshot  called on the mapper's thread after each new snapshot; must return at once; may be empty
+  /// @param epoch        names this life of the map, below 2^53; scans of map number n (RegisteredScan) go into the
+  ///                     map of epoch + n
+  /// @param on_snapshot  called on the mapper's thread after each new snapshot; must return at once and throw nothing;
+  ///                     may be empty
   MappingService(const ServiceConfig& config, std::uint64_t epoch, Counters& counters,
                  std::function<void()> on_snapshot);
   ~MappingService();
   MappingService(const MappingService&) = delete;
   MappingService& operator=(const MappingService&) = delete;
 
-  /// Queues a scan; if the queue is full, its oldest one is dropped and counted. From any thread.
+  /// Queues a scan; if the queue is full, its oldest one is dropped and counted. A scan of a greater map number than
+  /// those before begins a new map. From any thread.
   void push(RegisteredScan&& scan);
   /// The newest snapshot, never nullptr; immutable. From any thread.
   std::shared_ptr<const MapSnapshot> snapshot() const;
@@ -49,11 +61,17 @@ class MappingService {
  private:
   void run(const std::stop_token& stop);
   void map(const RegisteredScan& scan);
+  void begin_new_map(std::uint64_t map_number);
+  void note_busy(std::optional<double> since_host_s);
+  void note_error(std::string error);
 
+  const MapperConfig config_;
+  const std::uint64_t first_epoch_;
   Counters& counters_;
   std::function<void()> on_snapshot_;
   ScanQueue queue_;
-  Mapper mapper_;
+  Mapper mapper_;                 ///< of the mapper's thread alone, like the next
+  std::uint64_t map_number_ = 0;  ///< of the map that is being made
 
   mutable std::mutex mutex_;  ///< of what follows; held for copies only
   std::shared_ptr<const MapSnapshot> snapshot_;

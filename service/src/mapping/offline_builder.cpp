@@ -10,9 +10,11 @@ namespace planemap::service {
 class OfflineBuilder::Impl {
  public:
   Impl(const ServiceConfig& config, std::uint64_t epoch)
-      : mapper_(config.mapper, epoch),
+      : config_(config.mapper),
+        first_epoch_(epoch),
+        mapper_(config_, epoch),
         intake_(
-            config, counters_, [this](RegisteredScan&& scan) { map(scan.scan, scan.T_world_sensor); },
+            config, counters_, [this](RegisteredScan&& scan) { map(scan); },
             [](const std::string&) { /* counted, and kept as last_problem(); a library has no log of its own */ }) {}
 
   bool add_event(std::string_view channel, std::span<const std::uint8_t> message) {
@@ -35,6 +37,17 @@ class OfflineBuilder::Impl {
   /// In a recording only the messages' own time counts.
   static constexpr double kHostTimeStandsStillS = 0.0;
 
+  void map(const RegisteredScan& scan) {
+    if (scan.map_number > map_number_) begin_new_map(scan.map_number);
+    map(scan.scan, scan.T_world_sensor);
+  }
+
+  void begin_new_map(std::uint64_t map_number) {
+    mapper_ = Mapper(config_, first_epoch_ + map_number);
+    map_number_ = map_number;
+    counters_.add("map.resets");
+  }
+
   ScanReport map(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
     timer_.reset();
     const auto begin = StageTimer::Clock::now();
@@ -47,8 +60,11 @@ class OfflineBuilder::Impl {
     return report;
   }
 
+  const MapperConfig config_;
+  const std::uint64_t first_epoch_;
   Counters counters_;
   Mapper mapper_;
+  std::uint64_t map_number_ = 0;
   StageTimer timer_;
   StageTimes times_;
   PointCounts points_;

@@ -21,7 +21,8 @@ namespace planemap::service {
 class OfflineBuilder {
  public:
   /// @param config  as load_config gave it
-  /// @param epoch   names this map, below 2^53; by custom a hash of the input and the configuration
+  /// @param epoch   names this map, below 2^53; by custom a hash of the input and the configuration. With pose.jump:
+  ///                reset the n-th new map has epoch + n
   OfflineBuilder(const ServiceConfig& config, std::uint64_t epoch);
   ~OfflineBuilder();
   OfflineBuilder(const OfflineBuilder&) = delete;
@@ -32,7 +33,8 @@ class OfflineBuilder {
   /// @return whether the channel is one of the inputs'; others are passed over
   bool add_event(std::string_view channel, std::span<const std::uint8_t> message);
 
-  /// One scan whose pose is known, for instance of a folder. Inputs' extrinsics, ranges and body masks do not apply.
+  /// One scan whose pose is known, for instance of a folder. Inputs' extrinsics, ranges and body masks do not apply,
+  /// nor do the settings of poses.
   /// @param T_world_sensor  takes sensor coordinates to world coordinates
   ScanReport add_frame(const Scan& scan, const Eigen::Isometry3d& T_world_sensor);
 
@@ -43,7 +45,7 @@ class OfflineBuilder {
   std::shared_ptr<const MapSnapshot> snapshot();
 
   CounterValues counters() const;     ///< the daemon's names: scans.received, scans.mapped, scans.dropped.no_pose, ...
-  const PointCounts& points() const;  ///< of all mapped scans
+  const PointCounts& points() const;  ///< of all mapped scans, also those of maps that were left behind
   const StageTimes& times() const;    ///< of all mapped scans, in order
   std::string last_problem() const;   ///< why the last unmapped scan or pose could not be used, in words; empty: none
 

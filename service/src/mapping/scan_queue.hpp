@@ -25,6 +25,7 @@ class ScanQueue {
   /// Empties the queue. @return how many scans were in it
   std::size_t clear();
   std::size_t size() const;
+  std::size_t capacity() const { return capacity_; }
 
  private:
   const std::size_t capacity_;

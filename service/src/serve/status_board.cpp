@@ -25,7 +25,16 @@ StatusBoard::StatusBoard(const ScanIntake& intake, const MappingService& mapping
 
 std::string StatusBoard::idle_reason_at(double now_host_s) const {
   const MappingStats stats = mapping_.stats(now_host_s);
-  return idle_reason(intake_.facts(), MapperFacts{stats.mapped, stats.last_mapped_host_s}, now_host_s);
+  const MapperFacts mapper{stats.mapped,
+                           stats.last_mapped_host_s,
+                           stats.queued,
+                           stats.queue_capacity,
+                           stats.busy_since_host_s,
+                           stats.dropped_from_full_queue,
+                           stats.last_dropped_host_s,
+                           stats.last_error,
+                           stats.last_error_host_s};
+  return idle_reason(intake_.facts(), mapper, now_host_s);
 }
 
 planemap_lcm::status_t StatusBoard::status(double now_host_s, std::int64_t utime) {

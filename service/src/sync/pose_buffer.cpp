@@ -21,11 +21,8 @@ Eigen::Isometry3d to_isometry(const Eigen::Vector3d& p_m, const Eigen::Quaternio
   return T;
 }
 
-PoseLookup found(const Eigen::Isometry3d& T_world_body) {
-  return {PoseMatch::kFound, T_world_body, 0.0};
-}
-PoseLookup found(const StampedPose& pose) {
-  return found(to_isometry(pose.p_world_m, pose.q_world_body));
+PoseLookup not_found(PoseMatch why, double gap_s = 0.0) {
+  return {why, Eigen::Isometry3d::Identity(), gap_s, 0};
 }
 
 Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::int64_t utime) {
@@ -37,19 +34,21 @@ Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::i
 
 PoseBuffer::PoseBuffer(const PoseConfig& config)
     : history_us_(to_us(config.buffer_s)),
+      restart_us_(to_us(config.restart_s)),
       max_gap_us_(to_us(config.max_gap_s)),
       exact_us_(to_us(config.exact_s)),
       jump_m_(config.jump_m),
       jump_rad_(config.jump_deg * std::numbers::pi / 180.0) {}
 
 PoseInsert PoseBuffer::insert(const StampedPose& pose) {
-  if (!poses_.empty() && pose.utime < poses_.back().utime - history_us_) {
-    poses_.assign(1, pose);
+  const std::uint64_t jumps = poses_.empty() ? 0 : poses_.back().jumps;
+  if (!poses_.empty() && pose.utime < poses_.back().utime - restart_us_) {
+    poses_.assign(1, Kept{pose, jumps});
     return PoseInsert::kRestarted;
   }
   if (poses_.empty() || pose.utime > poses_.back().utime) {
     const bool jumped = !poses_.empty() && is_jump(poses_.back(), pose);
-    poses_.push_back(pose);
+    poses_.push_back(Kept{pose, jumps + (jumped ? 1 : 0)});
     forget_old();
     return jumped ? PoseInsert::kJumped : PoseInsert::kAppended;
   }
@@ -57,9 +56,17 @@ PoseInsert PoseBuffer::insert(const StampedPose& pose) {
                                       [](const StampedPose& p, std::int64_t utime) { return p.utime < utime; });
   if (place->utime == pose.utime) return PoseInsert::kDuplicate;
   if (poses_.size() >= kMaxPoses && place == poses_.begin()) return PoseInsert::kTooOld;
-  poses_.insert(place, pose);
+  poses_.insert(place, Kept{pose, jumps_at(place, pose)});
   forget_old();
   return PoseInsert::kOutOfOrder;
+}
+
+/// A late pose belongs to the side of a jump from which it is no jump itself.
+std::uint64_t PoseBuffer::jumps_at(std::deque<Kept>::const_iterator place, const StampedPose& pose) const {
+  const Kept& after = *place;
+  if (place == poses_.begin()) return after.jumps;
+  const Kept& before = *std::prev(place);
+  return is_jump(before, pose) && !is_jump(pose, after) ? after.jumps : before.jumps;
 }
 
 void PoseBuffer::forget_old() {
@@ -72,26 +79,32 @@ bool PoseBuffer::is_jump(const StampedPose& a, const StampedPose& b) const {
   return (b.p_world_m - a.p_world_m).norm() > jump_m_ || a.q_world_body.angularDistance(b.q_world_body) > jump_rad_;
 }
 
+PoseLookup PoseBuffer::found(const Kept& pose) {
+  return {PoseMatch::kFound, to_isometry(pose.p_world_m, pose.q_world_body), 0.0, pose.jumps};
+}
+
 PoseLookup PoseBuffer::find(std::int64_t utime) const {
-  if (poses_.empty()) return {PoseMatch::kNoneYet, Eigen::Isometry3d::Identity(), 0.0};
+  if (poses_.empty()) return not_found(PoseMatch::kNoneYet);
   const auto after = std::lower_bound(poses_.begin(), poses_.end(), utime,
                                       [](const StampedPose& p, std::int64_t t) { return p.utime < t; });
   if (after == poses_.end()) {
     if (utime - poses_.back().utime <= exact_us_) return found(poses_.back());
-    return {PoseMatch::kNotYet, Eigen::Isometry3d::Identity(), 0.0};
+    return not_found(PoseMatch::kNotYet);
   }
   if (after->utime == utime) return found(*after);
   if (after == poses_.begin()) {
     if (after->utime - utime <= exact_us_) return found(*after);
-    return {PoseMatch::kBefore, Eigen::Isometry3d::Identity(), 0.0};
+    return not_found(PoseMatch::kBefore);
   }
-  const StampedPose& before = *std::prev(after);
+  const Kept& before = *std::prev(after);
   const bool has_gap = after->utime - before.utime > max_gap_us_;
-  if (!has_gap && !is_jump(before, *after)) return found(interpolate(before, *after, utime));
-  const StampedPose& nearest = utime - before.utime <= after->utime - utime ? before : *after;
+  if (!has_gap && !is_jump(before, *after)) {
+    return {PoseMatch::kFound, interpolate(before, *after, utime), 0.0, before.jumps};
+  }
+  const Kept& nearest = utime - before.utime <= after->utime - utime ? before : *after;
   if (std::abs(nearest.utime - utime) <= exact_us_) return found(nearest);
   const double gap_s = static_cast<double>(after->utime - before.utime) * 1e-6;
-  return {has_gap ? PoseMatch::kGap : PoseMatch::kJump, Eigen::Isometry3d::Identity(), gap_s};
+  return not_found(has_gap ? PoseMatch::kGap : PoseMatch::kJump, gap_s);
 }
 
 }  // namespace planemap::service

@@ -23,7 +23,7 @@ enum class PoseInsert {
   kOutOfOrder,  ///< put in its place among older ones
   kDuplicate,   ///< one of that utime is there; the first stays
   kTooOld,      ///< older than all of a full buffer; left out
-  kRestarted,   ///< the clock stepped back by more than buffer_s: the buffer was cleared and holds only this one
+  kRestarted,   ///< the clock stepped back by more than restart_s: the buffer was cleared and holds only this one
 };
 
 /// Why there is a pose, or none.
@@ -40,6 +40,7 @@ struct PoseLookup {
   PoseMatch match = PoseMatch::kNoneYet;
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< with kFound
   double gap_s = 0.0;                                              ///< with kGap: between the poses around it
+  std::uint64_t jumps = 0;                                         ///< with kFound: jumps of these poses until then
 };
 
 /// The poses of one channel by time. Bounded; not thread-safe.
@@ -57,15 +58,22 @@ class PoseBuffer {
   std::int64_t newest_utime() const { return poses_.empty() ? 0 : poses_.back().utime; }
 
  private:
+  struct Kept : StampedPose {
+    std::uint64_t jumps = 0;  ///< from the first pose of all to this one
+  };
+
+  static PoseLookup found(const Kept& pose);
+  std::uint64_t jumps_at(std::deque<Kept>::const_iterator place, const StampedPose& pose) const;
   bool is_jump(const StampedPose& a, const StampedPose& b) const;
   void forget_old();
 
   std::int64_t history_us_;
+  std::int64_t restart_us_;
   std::int64_t max_gap_us_;
   std::int64_t exact_us_;
   double jump_m_;
   double jump_rad_;
-  std::deque<StampedPose> poses_;  ///< by utime, no two equal
+  std::deque<Kept> poses_;  ///< by utime, no two equal
 };
 
 }  // namespace planemap::service

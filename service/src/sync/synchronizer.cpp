@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace planemap::service {
@@ -49,11 +50,13 @@ const char* reason_of(PoseMatch match) {
 }  // namespace
 
 Synchronizer::Synchronizer(const ServiceConfig& config)
-    : config_(config.pose), max_waiting_bytes_(static_cast<std::size_t>(config.limits.waiting_bytes)) {
+    : config_(config.pose),
+      restart_us_(std::llround(config.pose.restart_s * 1e6)),
+      max_waiting_bytes_(static_cast<std::size_t>(config.limits.waiting_bytes)) {
   std::map<std::string, std::size_t> stream_by_channel;
   for (const auto& input : config.inputs) {
     const auto [entry, is_new] = stream_by_channel.emplace(input.pose_channel, streams_.size());
-    if (is_new) streams_.emplace_back(config.pose);
+    if (is_new) streams_.push_back(Stream{PoseBuffer(config.pose)});
     Input state;
     state.pose_channel = input.pose_channel;
     state.stream = entry->second;
@@ -63,24 +66,30 @@ Synchronizer::Synchronizer(const ServiceConfig& config)
 }
 
 PoseInsert Synchronizer::add_pose(std::size_t stream, const StampedPose& pose) {
-  const PoseInsert result = streams_[stream].insert(pose);
+  const PoseInsert result = streams_[stream].poses.insert(pose);
   if (result == PoseInsert::kRestarted) drop_old_run(stream, pose.utime);
   return result;
 }
 
 void Synchronizer::drop_old_run(std::size_t stream, std::int64_t restart_utime) {
-  const auto history_us = static_cast<std::int64_t>(config_.buffer_s * 1e6);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (inputs_[i].stream != stream) continue;
+    Input& input = inputs_[i];
+    if (input.stream != stream) continue;
     // Scans of the old run stand before those of the new one, which may have been faster than the first new pose.
-    while (!inputs_[i].waiting.empty() && inputs_[i].waiting.front().utime > restart_utime + history_us) {
-      drop_front(i, "clock_restart",
-                 fmt::format("the clock of {} stepped back to {} while the scan at {} waited for its pose",
-                             inputs_[i].pose_channel, seconds_text(restart_utime),
-                             seconds_text(inputs_[i].waiting.front().utime)),
-                 dropped_early_);
+    while (!input.waiting.empty() && is_of_old_run(input, input.waiting.front(), restart_utime)) {
+      drop_front(
+          i, "clock_restart",
+          fmt::format("the clock of {} stepped back to {} while the scan at {} waited for its pose", input.pose_channel,
+                      seconds_text(restart_utime), seconds_text(input.waiting.front().utime)),
+          dropped_early_);
     }
+    input.posed_run = input.run;
   }
+}
+
+bool Synchronizer::is_of_old_run(const Input& input, const Waiting& scan, std::int64_t restart_utime) const {
+  const bool scans_restarted_first = input.run > input.posed_run;
+  return scans_restarted_first ? scan.run < input.run : scan.utime > restart_utime + restart_us_;
 }
 
 void Synchronizer::add_scan(std::size_t index, Scan scan, double host_s) {
@@ -90,9 +99,14 @@ void Synchronizer::add_scan(std::size_t index, Scan scan, double host_s) {
   waiting.since_host_s = host_s;
   waiting.bytes = bytes_of(scan);
   waiting.scan = std::move(scan);
-  const auto history_us = static_cast<std::int64_t>(config_.buffer_s * 1e6);
-  const bool restarted = waiting.utime < input.newest_utime - history_us;
-  input.newest_utime = restarted ? waiting.utime : std::max(input.newest_utime, waiting.utime);
+  if (waiting.utime < input.newest_utime - restart_us_) {
+    ++input.run;
+    input.run_begin_utime = input.newest_utime = waiting.utime;
+    const bool poses_went_before = poses(input.stream).newest_utime() <= waiting.utime + restart_us_;
+    if (poses_went_before) input.posed_run = input.run;
+  }
+  input.newest_utime = std::max(input.newest_utime, waiting.utime);
+  waiting.run = input.run;
   const std::size_t bytes = waiting.bytes;
   input.waiting.push_back(std::move(waiting));
   waiting_bytes_ += bytes;
@@ -122,9 +136,13 @@ void Synchronizer::decide(std::size_t index, double host_s, bool at_end, SyncRes
   Input& input = inputs_[index];
   while (!input.waiting.empty()) {
     const Waiting& first = input.waiting.front();
-    const PoseLookup lookup = streams_[input.stream].find(first.utime);
+    if (first.run > input.posed_run) {
+      if (!at_end && !has_expired(input, first, host_s)) return;
+      input.posed_run = first.run;  // the poses' clock goes on: this scan was only late
+    }
+    const PoseLookup lookup = poses(input.stream).find(first.utime);
     if (lookup.match == PoseMatch::kFound) {
-      results.ready.push_back(RegisteredScan{index, pop_front(input).scan, lookup.T_world_body * input.T_body_sensor});
+      hand_on(index, lookup, results);
       continue;
     }
     // What lies between two known poses is decided; anything else may yet be helped by a pose that comes.
@@ -134,13 +152,32 @@ void Synchronizer::decide(std::size_t index, double host_s, bool at_end, SyncRes
   }
 }
 
+void Synchronizer::hand_on(std::size_t index, const PoseLookup& lookup, SyncResults& results) {
+  Input& input = inputs_[index];
+  Stream& stream = streams_[input.stream];
+  if (config_.resets_map() && lookup.jumps < stream.jumps) {
+    return drop_front(index, "old_map",
+                      fmt::format("the scan at {} is from before a jump of the pose on {}, where a new map has begun",
+                                  seconds_text(input.waiting.front().utime), input.pose_channel),
+                      results.dropped);
+  }
+  // Jumps before the first scan leave nothing behind that would be worth a new map.
+  if (config_.resets_map() && lookup.jumps > stream.jumps && !map_is_empty_) ++map_number_;
+  stream.jumps = std::max(stream.jumps, lookup.jumps);
+  map_is_empty_ = false;
+  results.ready.push_back(
+      RegisteredScan{index, pop_front(input).scan, lookup.T_world_body * input.T_body_sensor, map_number_});
+}
+
 bool Synchronizer::has_expired(const Input& input, const Waiting& scan, double host_s) const {
-  const double by_messages_s = static_cast<double>(input.newest_utime - scan.utime) * 1e-6;
+  // Times of two runs can't be compared; a scan of the run before has waited at least as long as the new one lasts.
+  const std::int64_t from_utime = scan.run == input.run ? scan.utime : input.run_begin_utime;
+  const double by_messages_s = static_cast<double>(input.newest_utime - from_utime) * 1e-6;
   return by_messages_s > config_.max_wait_s || host_s - scan.since_host_s > config_.max_wait_s;
 }
 
 std::string Synchronizer::describe(const Input& input, std::int64_t utime, const PoseLookup& lookup) const {
-  const PoseBuffer& buffer = streams_[input.stream];
+  const PoseBuffer& buffer = poses(input.stream);
   const std::string at = seconds_text(utime);
   switch (lookup.match) {
     case PoseMatch::kNoneYet:

@@ -76,6 +76,10 @@ std::string summary_text(const BuildResult& result, const ExportMap& map) {
   list("skipped", skipped);
   list("dropped", counters_below(result, "scans.dropped."));
   list("rejected", counters_below(result, "scans.rejected."));
+  if (const auto resets = counters_below(result, "map.resets"); !resets.empty()) {
+    text += fmt::format("the pose jumped, and a new map began {} times: what follows is the last one\n",
+                        resets.begin()->second);
+  }
   if (result.gaps > 0)
     text += fmt::format("damaged stretches of the log: {}, {} bytes\n", result.gaps, result.gap_bytes);
   text += '\n' + times_text(result.times) + '\n';

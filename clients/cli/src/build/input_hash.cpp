@@ -79,7 +79,8 @@ Expected<std::uint64_t> epoch_of(const fs::path& input, std::string_view setting
   } else if (auto added = add_contents(input, hash); !added) {
     return tl::make_unexpected(added.error());
   }
-  const std::uint64_t epoch = hash.value() >> 11u;  // below 2^53: a whole number in any reader of JSON
+  // Below 2^52: where a map is begun anew its epoch grows, and stays below 2^53, a whole number in any reader of JSON.
+  const std::uint64_t epoch = hash.value() >> 12u;
   return std::max<std::uint64_t>(epoch, 1);
 }
 

@@ -7,7 +7,7 @@
 
 namespace planemap::cli {
 
-/// Names an offline map: the same input and settings give the same number, other ones another. 1 to 2^53 - 1.
+/// Names an offline map: the same input and settings give the same number, other ones another. 1 to 2^52 - 1.
 /// @param input     a log, or a folder: its depth images and text files count, by their names in it and their contents
 /// @param settings  all that shapes the map besides
 Expected<std::uint64_t> epoch_of(const std::filesystem::path& input, std::string_view settings);
