@@ -1,88 +1,48 @@
 // Runs the built program as a user does.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <zlib.h>
 
 #include <algorithm>
-#include <bot_core/pose_t.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
-#include <planemap_lcm/depth_scan_t.hpp>
 #include <string>
 #include <vector>
+
+#include "support/messages.hpp"
+#include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace planemap::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string contents_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
 class CliTest : public testing::Test {
  protected:
-  CliTest() {
-    std::string pattern = (fs::temp_directory_path() / "planemap-cli-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~CliTest() override { fs::remove_all(folder_); }
-
   /// Runs "planemap ARGUMENTS"; arguments are the shell's.
-  Outcome planemap(const std::string& arguments) const {
-    const fs::path out = folder_ / "stdout";
-    const fs::path err = folder_ / "stderr";
-    const std::string command =
-        std::string("'") + PLANEMAP_PROGRAM + "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
-    const int status = std::system(command.c_str());
-    EXPECT_TRUE(WIFEXITED(status)) << command;
-    return {WEXITSTATUS(status), contents_of(out), contents_of(err)};
+  Finished planemap(const std::string& arguments) const {
+    return run_in_shell(std::string("'") + PLANEMAP_PROGRAM + "' " + arguments, folder_.path());
   }
-
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// One wall 2 m before the camera, tilted by 0.1 in x, 160x120.
-planemap_lcm::depth_scan_t wall_scan(std::int64_t utime) {
-  planemap_lcm::depth_scan_t scan{};
-  scan.utime = utime;
-  scan.width = 160;
-  scan.height = 120;
-  scan.fx = scan.fy = 146.0;
-  scan.cx = 80.0;
-  scan.cy = 60.0;
-  scan.depth_scale_m = 0.001;
-  scan.encoding = planemap_lcm::depth_scan_t::ENCODING_RAW;
-  for (int v = 0; v < scan.height; ++v) {
-    for (int u = 0; u < scan.width; ++u) {
-      const double slope = 0.1 * (u - scan.cx) / scan.fx;  // z = 2 m + 0.1 x
-      const auto depth = static_cast<std::uint16_t>(2000.0 / (1.0 - slope) + 0.5);
-      scan.data.push_back(static_cast<std::uint8_t>(depth & 0xffu));
-      scan.data.push_back(static_cast<std::uint8_t>(depth >> 8u));
-    }
-  }
-  scan.size = static_cast<std::int32_t>(scan.data.size());
-  scan.crc32 = static_cast<std::int32_t>(crc32(0, scan.data.data(), static_cast<uInt>(scan.data.size())));
-  return scan;
+planemap_lcm::depth_scan_t tilted_wall_message(std::int64_t utime) {
+  const TestCamera camera{160, 120, 146.0};
+  return depth_message(utime, /*seq=*/0, camera, [&](int u, int /*v*/) {
+    const double slope = 0.1 * (u - camera.width / 2.0) / camera.focal_px;  // z = 2 m + 0.1 x
+    return static_cast<std::uint16_t>(2000.0 / (1.0 - slope) + 0.5);
+  });
 }
 
 template <class Message>
 void write_event(lcm::LogFile& log, const char* channel, std::int64_t utime, const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  Bytes bytes = encoded(message);
   lcm::LogEvent event{};
   event.timestamp = utime;
   event.channel = channel;
@@ -97,22 +57,19 @@ void write_wall_log(const std::string& path, int scans) {
   ASSERT_TRUE(log.good());
   for (int k = 0; k < scans; ++k) {
     const std::int64_t utime = 1'000'000 + 33'333 * k;
-    bot_core::pose_t pose{};
-    pose.utime = utime;
-    pose.orientation[0] = 1.0;
-    write_event(log, "POSE", utime, pose);
-    write_event(log, "PLANEMAP_SCAN", utime, wall_scan(utime));
+    write_event(log, "POSE", utime, pose_message(utime));
+    write_event(log, "PLANEMAP_SCAN", utime, tilted_wall_message(utime));
   }
 }
 
 TEST_F(CliTest, HelpAndVersionAreThereForEveryCommand) {
   for (const char* command : {"", "build", "status", "snapshot", "export"}) {
-    const Outcome outcome = planemap(std::string(command) + " --help");
-    EXPECT_EQ(outcome.code, 0) << command;
+    const Finished outcome = planemap(std::string(command) + " --help");
+    EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_NE(outcome.out.find("--help"), std::string::npos) << command;
   }
-  const Outcome version = planemap("--version");
-  EXPECT_EQ(version.code, 0);
+  const Finished version = planemap("--version");
+  EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.rfind("planemap ", 0), 0u) << version.out;
 }
 
@@ -135,14 +92,14 @@ TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"build " + log + " --preset fancy", "fancy"},
       {"build " + log + " --config '" + path("missing.yaml") + "'", "missing.yaml"},
       {"build " + log + " --intrinsics 500,500,320,240", "--intrinsics"},
-      {"build '" + folder_.string() + "' --intrinsics 500,500", "--intrinsics"},
+      {"build '" + folder_.path().string() + "' --intrinsics 500,500", "--intrinsics"},
       {"export - '" + path("map.xyz") + "'", ".csv"},
       {"export map.planemap '" + path("map.csv") + "'", "map.planemap"},
       {"status --timeout 0", "timeout"},
   };
   for (const Case& wrong : cases) {
-    const Outcome outcome = planemap(wrong.arguments);
-    EXPECT_EQ(outcome.code, 2) << wrong.arguments;
+    const Finished outcome = planemap(wrong.arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << wrong.arguments;
     EXPECT_NE((outcome.err + outcome.out).find(wrong.said), std::string::npos)
         << wrong.arguments << ": " << outcome.err;
   }
@@ -150,27 +107,24 @@ TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
 
 TEST_F(CliTest, InputsThatAreNoRecordingsFailWithAReason) {
   std::ofstream(path("text")) << "this is no log";
-  const Outcome text = planemap("build '" + path("text") + "'");
-  EXPECT_EQ(text.code, 1);
+  const Finished text = planemap("build '" + path("text") + "'");
+  EXPECT_EQ(text.exit_code, 1);
   EXPECT_NE(text.err.find("is no LCM event log"), std::string::npos) << text.err;
 
   fs::create_directory(path("empty"));
-  const Outcome folder = planemap("build '" + path("empty") + "'");
-  EXPECT_EQ(folder.code, 1);
+  const Finished folder = planemap("build '" + path("empty") + "'");
+  EXPECT_EQ(folder.exit_code, 1);
   EXPECT_NE(folder.err.find(path("empty")), std::string::npos) << folder.err;
 }
 
 TEST_F(CliTest, ALogWithoutScansFailsAndNamesItsChannels) {
   {
     lcm::LogFile log(path("log"), "w");
-    bot_core::pose_t pose{};
-    pose.utime = 1;
-    pose.orientation[0] = 1.0;
-    write_event(log, "POSE", 1, pose);
-    write_event(log, "LIDAR", 2, pose);
+    write_event(log, "POSE", 1, pose_message(1));
+    write_event(log, "LIDAR", 2, pose_message(1));
   }
-  const Outcome outcome = planemap("build '" + path("log") + "' --export '" + path("map.json") + "'");
-  EXPECT_EQ(outcome.code, 1);
+  const Finished outcome = planemap("build '" + path("log") + "' --export '" + path("map.json") + "'");
+  EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_NE(outcome.err.find("LIDAR"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(path("map.json")));
 }
@@ -178,8 +132,8 @@ TEST_F(CliTest, ALogWithoutScansFailsAndNamesItsChannels) {
 TEST_F(CliTest, NoDaemonIsThreeWithASentence) {
   for (const std::string command : {"status", "snapshot", "status --json", "export - map.json"}) {
     // A bus of the process's own: there is nobody else on it.
-    const Outcome outcome = planemap(command + " --lcm-url memq:// --timeout 0.1");
-    EXPECT_EQ(outcome.code, 3) << command;
+    const Finished outcome = planemap(command + " --lcm-url memq:// --timeout 0.1");
+    EXPECT_EQ(outcome.exit_code, 3) << command;
     EXPECT_NE(outcome.err.find("planemapd"), std::string::npos) << outcome.err;
     EXPECT_TRUE(outcome.out.empty()) << outcome.out;
   }
@@ -191,8 +145,8 @@ TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
     std::string arguments = "build '" + path("log") + "' --json --set 'map.gravity=[0, 1, 0]'";
     for (const char* extension : {".json", ".csv", ".ply", ".svg"})
       arguments += " --export '" + path(name + extension) + "'";
-    const Outcome outcome = planemap(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Finished outcome = planemap(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   };
   const auto summary = build("first");
@@ -205,7 +159,7 @@ TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
   EXPECT_GE(summary["msPerScan"]["max"], summary["msPerScan"]["p50"]);
   EXPECT_TRUE(summary["msPerScan"]["stages"].contains("assign"));
 
-  const auto map = nlohmann::json::parse(contents_of(path("first.json")));
+  const auto map = nlohmann::json::parse(read_file(path("first.json")));
   ASSERT_EQ(map["planes"].size(), 1u);
   EXPECT_EQ(map["planes"][0]["class"], "wall");
   // z = 2 + 0.1 x, seen from the origin: the normal is (0.1, 0, -1) / |(0.1, 0, -1)|.
@@ -216,7 +170,7 @@ TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
 
   build("second");
   for (const char* extension : {".json", ".csv", ".ply", ".svg"}) {
-    EXPECT_EQ(contents_of(path(std::string("first") + extension)), contents_of(path(std::string("second") + extension)))
+    EXPECT_EQ(read_file(path(std::string("first") + extension)), read_file(path(std::string("second") + extension)))
         << extension;
   }
 }
@@ -224,8 +178,8 @@ TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
 TEST_F(CliTest, TheEpochNamesInputAndSettings) {
   write_wall_log(path("log"), 2);
   const auto epoch = [&](const std::string& more) {
-    const Outcome outcome = planemap("build '" + path("log") + "' --json " + more);
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const Finished outcome = planemap("build '" + path("log") + "' --json " + more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out)["epoch"].get<std::uint64_t>();
   };
   const auto first = epoch("");
@@ -239,18 +193,18 @@ TEST_F(CliTest, TheEpochNamesInputAndSettings) {
 
 TEST_F(CliTest, FramesLimitsTheScansOfALog) {
   write_wall_log(path("log"), 6);
-  const Outcome outcome = planemap("build '" + path("log") + "' --json --frames 4");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Finished outcome = planemap("build '" + path("log") + "' --json --frames 4");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["scans"], 4);
 }
 
 TEST_F(CliTest, QuietPrintsNothingAndTheSummaryNamesThePlanes) {
   write_wall_log(path("log"), 8);
-  const Outcome quiet = planemap("build '" + path("log") + "' --quiet");
-  EXPECT_EQ(quiet.code, 0);
+  const Finished quiet = planemap("build '" + path("log") + "' --quiet");
+  EXPECT_EQ(quiet.exit_code, 0);
   EXPECT_EQ(quiet.out + quiet.err, "");
-  const Outcome summary = planemap("build '" + path("log") + "'");
-  EXPECT_EQ(summary.code, 0);
+  const Finished summary = planemap("build '" + path("log") + "'");
+  EXPECT_EQ(summary.exit_code, 0);
   EXPECT_NE(summary.out.find("scans mapped: 8"), std::string::npos) << summary.out;
   EXPECT_NE(summary.out.find("ms per scan"), std::string::npos);
   EXPECT_NE(summary.out.find("planes: 1"), std::string::npos);
@@ -261,15 +215,15 @@ TEST_F(CliTest, TheRedKitchenBuildsTheSameTwice) {
   const char* data = std::getenv("PLANEMAP_TEST_DATA");
   if (data == nullptr) GTEST_SKIP() << "PLANEMAP_TEST_DATA is not set";
   const std::string build = std::string("build '") + data + "/redkitchen' --frames 12 --json --export '";
-  const Outcome first = planemap(build + path("first.json") + "'");
-  ASSERT_EQ(first.code, 0) << first.err;
-  ASSERT_EQ(planemap(build + path("second.json") + "'").code, 0);
-  EXPECT_EQ(contents_of(path("first.json")), contents_of(path("second.json")));
+  const Finished first = planemap(build + path("first.json") + "'");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  ASSERT_EQ(planemap(build + path("second.json") + "'").exit_code, 0);
+  EXPECT_EQ(read_file(path("first.json")), read_file(path("second.json")));
   const auto summary = nlohmann::json::parse(first.out);
   EXPECT_EQ(summary["scans"], 12);
   EXPECT_EQ(summary["points"]["total"], 12 * 640 * 480);
   EXPECT_GT(summary["planes"], 3);
-  const auto map = nlohmann::json::parse(contents_of(path("first.json")));
+  const auto map = nlohmann::json::parse(read_file(path("first.json")));
   const auto has_class = [](const auto& plane) { return plane["class"] != "other"; };
   EXPECT_TRUE(std::any_of(map["planes"].begin(), map["planes"].end(), has_class))
       << "the folder's gravity was not taken";

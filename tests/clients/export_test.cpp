@@ -17,6 +17,7 @@
 #include "export/floor_plan.hpp"
 #include "export/formats.hpp"
 #include "plane_table.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace planemap::cli {
 namespace {
@@ -88,16 +89,10 @@ std::string text_of(void (*write)(const ExportMap&, std::ostream&), const Export
 
 class ExportFolder : public testing::Test {
  protected:
-  ExportFolder() {
-    std::string pattern = (fs::temp_directory_path() / "planemap-export-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ExportFolder() override { fs::remove_all(folder_); }
-
   std::size_t file_count() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST(PlanesJson, HoldsEveryMemberAndTheSameDoubles) {

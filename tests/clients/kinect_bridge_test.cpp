@@ -1,54 +1,31 @@
 // Runs the built program as a user does.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <zlib.h>
 
 #include <bot_core/pose_t.hpp>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
 #include <planemap_lcm/depth_scan_t.hpp>
 #include <string>
 #include <vector>
 
+#include "support/process.hpp"
+#include "support/temporary_folder.hpp"
+
 namespace planemap::kinect_bridge {
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string contents_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
 class KinectBridge : public testing::Test {
  protected:
-  KinectBridge() {
-    std::string pattern = (fs::temp_directory_path() / "planemap-kinect-bridge-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~KinectBridge() override { fs::remove_all(folder_); }
-
   /// Runs "planemap-kinect-bridge ARGUMENTS"; arguments are the shell's.
-  Outcome bridge(const std::string& arguments) const {
-    const std::string command =
-        std::string("'") + KINECT_BRIDGE_PROGRAM + "' " + arguments + " >'" + path("out") + "' 2>'" + path("err") + "'";
-    const int status = std::system(command.c_str());
-    EXPECT_TRUE(WIFEXITED(status)) << command;
-    return {WEXITSTATUS(status), contents_of(path("out")), contents_of(path("err"))};
+  Finished bridge(const std::string& arguments) const {
+    return run_in_shell(std::string("'") + KINECT_BRIDGE_PROGRAM + "' " + arguments, folder_.path());
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
  private:
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 struct Recorded {
@@ -82,13 +59,13 @@ Recorded read_log(const std::string& path) {
 }
 
 TEST_F(KinectBridge, HelpAndVersionAreThere) {
-  const Outcome help = bridge("--help");
-  EXPECT_EQ(help.code, 0);
+  const Finished help = bridge("--help");
+  EXPECT_EQ(help.exit_code, 0);
   for (const char* option : {"--dataset", "--simulate", "--seed", "--truth", "--log", "--pose-rate", "Exit codes"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
-  const Outcome version = bridge("--version");
-  EXPECT_EQ(version.code, 0);
+  const Finished version = bridge("--version");
+  EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.rfind("planemap-kinect-bridge ", 0), 0u) << version.out;
 }
 
@@ -110,28 +87,28 @@ TEST_F(KinectBridge, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"--simulate apartment --encoding jpeg", "zlib"},
       {"--simulate apartment --nonsense", "--nonsense"}};
   for (const auto& wrong : cases) {
-    const Outcome outcome = bridge(wrong.first);
-    EXPECT_EQ(outcome.code, 2) << wrong.first << "\n" << outcome.err;
+    const Finished outcome = bridge(wrong.first);
+    EXPECT_EQ(outcome.exit_code, 2) << wrong.first << "\n" << outcome.err;
     EXPECT_NE(outcome.err.find(wrong.second), std::string::npos) << wrong.first << "\n" << outcome.err;
   }
 }
 
 TEST_F(KinectBridge, FailuresAreOneAndSayWhatToDo) {
-  const Outcome missing = bridge("--dataset '" + path("missing") + "' --log '" + path("log") + "'");
-  EXPECT_EQ(missing.code, 1);
+  const Finished missing = bridge("--dataset '" + path("missing") + "' --log '" + path("log") + "'");
+  EXPECT_EQ(missing.exit_code, 1);
   EXPECT_NE(missing.err.find("no such folder"), std::string::npos) << missing.err;
-  const Outcome unwritable = bridge("--simulate apartment --frames 2 --log '" + path("no/log") + "'");
-  EXPECT_EQ(unwritable.code, 1);
+  const Finished unwritable = bridge("--simulate apartment --frames 2 --log '" + path("no/log") + "'");
+  EXPECT_EQ(unwritable.exit_code, 1);
   EXPECT_NE(unwritable.err.find(path("no/log")), std::string::npos) << unwritable.err;
-  const Outcome bad_url = bridge("--simulate apartment --frames 2 --lcm-url nonsense://x");
-  EXPECT_EQ(bad_url.code, 1);
+  const Finished bad_url = bridge("--simulate apartment --frames 2 --lcm-url nonsense://x");
+  EXPECT_EQ(bad_url.exit_code, 1);
   EXPECT_NE(bad_url.err.find("nonsense://x"), std::string::npos) << bad_url.err;
 }
 
 TEST_F(KinectBridge, LogOfASimulationHoldsItsFramesAndTheTruthItsPlanes) {
-  const Outcome outcome = bridge("--simulate apartment --seed 5 --frames 6 --rate 10 --pose-rate 100 --json --log '" +
-                                 path("log") + "' --truth '" + path("truth.json") + "'");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Finished outcome = bridge("--simulate apartment --seed 5 --frames 6 --rate 10 --pose-rate 100 --json --log '" +
+                                  path("log") + "' --truth '" + path("truth.json") + "'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto summary = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(summary.at("frames"), 6);
   EXPECT_EQ(summary.at("lastUtime"), 1'500'000);
@@ -146,24 +123,25 @@ TEST_F(KinectBridge, LogOfASimulationHoldsItsFramesAndTheTruthItsPlanes) {
     EXPECT_EQ(recorded.scans[k].width, 640);
     EXPECT_EQ(recorded.scans[k].encoding, planemap_lcm::depth_scan_t::ENCODING_ZLIB);
   }
-  EXPECT_GT(nlohmann::json::parse(contents_of(path("truth.json"))).at("planes").size(), 30u);
+  EXPECT_GT(nlohmann::json::parse(read_file(path("truth.json"))).at("planes").size(), 30u);
 }
 
 TEST_F(KinectBridge, SameSeedGivesTheSameLog) {
   for (const char* name : {"a", "b"}) {
     const std::string noise = " --pose-noise-m 0.01 --pose-noise-deg 0.5 --pose-correlation-s 2";
-    ASSERT_EQ(bridge("--simulate apartment --seed 11 --frames 3 --quiet --log '" + path(name) + "'" + noise).code, 0);
+    ASSERT_EQ(bridge("--simulate apartment --seed 11 --frames 3 --quiet --log '" + path(name) + "'" + noise).exit_code,
+              0);
   }
-  EXPECT_FALSE(contents_of(path("a")).empty());
-  EXPECT_EQ(contents_of(path("a")), contents_of(path("b")));
+  EXPECT_FALSE(read_file(path("a")).empty());
+  EXPECT_EQ(read_file(path("a")), read_file(path("b")));
 }
 
 TEST_F(KinectBridge, LogOfALoopedDatasetKeepsItsTimes) {
   const char* folder = std::getenv("PLANEMAP_TEST_DATA");
   if (folder == nullptr) GTEST_SKIP() << "PLANEMAP_TEST_DATA is not set: no real data here";
-  const Outcome outcome = bridge("--dataset '" + std::string(folder) +
-                                 "/tum_fr1_desk_9' --loop --frames 12 --json --log '" + path("log") + "'");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Finished outcome = bridge("--dataset '" + std::string(folder) +
+                                  "/tum_fr1_desk_9' --loop --frames 12 --json --log '" + path("log") + "'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Recorded recorded = read_log(path("log"));
   ASSERT_EQ(recorded.scans.size(), 12u);
   EXPECT_EQ(recorded.scans.front().utime, 1305031453374112);

@@ -7,6 +7,7 @@
 #include <planemap/sources/tum_source.hpp>
 
 #include "sources_test_files.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace planemap::sources {
 namespace {

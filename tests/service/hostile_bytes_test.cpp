@@ -11,7 +11,7 @@
 #include "codec/pose_codec.hpp"
 #include "codec/request_codec.hpp"
 #include "codec/scan_codec.hpp"
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace {
 std::atomic<std::size_t> g_largest_allocation{0};

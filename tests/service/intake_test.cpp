@@ -8,7 +8,7 @@
 #include "ingest/point_filter.hpp"
 #include "ingest/rate_limiter.hpp"
 #include "ingest/scan_intake.hpp"
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

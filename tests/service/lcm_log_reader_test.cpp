@@ -10,20 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.hpp"
+
 namespace planemap::service {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of the test's own, removed at its end.
 class LcmLogReaderTest : public testing::Test {
  protected:
-  LcmLogReaderTest() {
-    std::string pattern = (fs::temp_directory_path() / "planemap-log-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~LcmLogReaderTest() override { fs::remove_all(folder_); }
-
   /// Message k is k * 100 + 1 bytes of value k; where its record begins is in offsets_, and the file's size behind
   /// them.
   fs::path write_log(int count) {
@@ -54,7 +49,7 @@ class LcmLogReaderTest : public testing::Test {
     ASSERT_TRUE(file.good());
   }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
   std::vector<std::uint64_t> offsets_;
 };
 
@@ -145,7 +140,7 @@ TEST_F(LcmLogReaderTest, AFileThatIsNoLogHasNoEvents) {
 }
 
 TEST_F(LcmLogReaderTest, FoldersAndMissingFilesAreNamedInTheError) {
-  for (const fs::path& path : {folder_, folder_ / "missing"}) {
+  for (const fs::path& path : {folder_.path(), folder_ / "missing"}) {
     const auto reader = LcmLogReader::open(path);
     ASSERT_FALSE(reader);
     EXPECT_NE(reader.error().message.find(path.string()), std::string::npos);

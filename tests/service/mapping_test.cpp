@@ -11,7 +11,7 @@
 #include "mapping/mapping_service.hpp"
 #include "mapping/scan_queue.hpp"
 #include "serve/status_board.hpp"
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "codec/pose_codec.hpp"
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

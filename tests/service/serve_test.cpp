@@ -12,7 +12,7 @@
 #include "serve/lcm/delta_maker.hpp"
 #include "serve/lcm/outbox.hpp"
 #include "serve/lcm/request_answerer.hpp"
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

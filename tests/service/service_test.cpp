@@ -11,7 +11,7 @@
 #include <planemap_lcm/reply_t.hpp>
 #include <planemap_lcm/status_t.hpp>
 
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 namespace planemap::service {
 namespace {

@@ -35,43 +35,42 @@ void add_truncations(std::vector<Bytes>& messages, const Bytes& whole) {
   }
 }
 
-/// 64 MB of zeros behind a header that says 160 x 120 pixels.
+/// 64 MB of zeros behind a header that says 80 x 60 pixels.
 Bytes inflating_scan() {
-  planemap_lcm::depth_scan_t scan = wall_scan(kUtime, 1);
+  planemap_lcm::depth_scan_t scan = wall_message(kUtime, 1);
   const Bytes zeros(std::size_t{64} << 20);
   uLongf size = compressBound(zeros.size());
   scan.data.resize(size);
   compress2(scan.data.data(), &size, zeros.data(), zeros.size(), 1);
   scan.data.resize(size);
-  scan.size = static_cast<std::int32_t>(size);
   scan.encoding = planemap_lcm::depth_scan_t::ENCODING_ZLIB;
-  scan.crc32 = static_cast<std::int32_t>(crc32(0, scan.data.data(), static_cast<uInt>(size)));
-  return bytes_of(scan);
+  stamp_checksum(scan);
+  return encoded(scan);
 }
 
 std::vector<Bytes> bad_scans() {
   std::mt19937 random(7);
   std::vector<Bytes> bad;
   for (const std::size_t size : {0u, 1u, 7u, 8u, 9u, 100u, 5000u, 70000u}) bad.push_back(random_bytes(random, size));
-  const Bytes good = bytes_of(wall_scan(kUtime, 1));
+  const Bytes good = encoded(wall_message(kUtime, 1));
   add_truncations(bad, good);
-  bad.push_back(bytes_of(still_pose(kUtime)));  // the wrong type for the channel
+  bad.push_back(encoded(pose_message(kUtime)));  // the wrong type for the channel
   planemap_lcm::point_scan_t points{};
   points.utime = kUtime;
   for (const std::int32_t count : {-1, 0x7fffffff, std::numeric_limits<std::int32_t>::min()}) {
     bad.push_back(with_number(good, kDepthSizeAt, count));
-    bad.push_back(with_number(bytes_of(points), kPointValuesAt, count));
+    bad.push_back(with_number(encoded(points), kPointValuesAt, count));
   }
   Bytes flipped = good;
   flipped[good.size() / 2] ^= 1;
   bad.push_back(flipped);
   bad.push_back(inflating_scan());
-  planemap_lcm::depth_scan_t scan = wall_scan(kUtime, 1);
+  planemap_lcm::depth_scan_t scan = wall_message(kUtime, 1);
   scan.width = scan.height = 0x7fffffff;
-  bad.push_back(bytes_of(scan));
-  scan = wall_scan(kUtime, 1);
+  bad.push_back(encoded(scan));
+  scan = wall_message(kUtime, 1);
   scan.fx = std::nan("");
-  bad.push_back(bytes_of(scan));
+  bad.push_back(encoded(scan));
   return bad;
 }
 
@@ -79,14 +78,14 @@ std::vector<Bytes> bad_poses() {
   std::mt19937 random(8);
   std::vector<Bytes> bad;
   for (const std::size_t size : {0u, 7u, 9u, 136u, 5000u}) bad.push_back(random_bytes(random, size));
-  add_truncations(bad, bytes_of(still_pose(kUtime)));
-  bad.push_back(bytes_of(wall_scan(kUtime, 1)));
-  bot_core::pose_t pose = still_pose(kUtime);
+  add_truncations(bad, encoded(pose_message(kUtime)));
+  bad.push_back(encoded(wall_message(kUtime, 1)));
+  bot_core::pose_t pose = pose_message(kUtime);
   pose.orientation[0] = 0.0;
-  bad.push_back(bytes_of(pose));
-  pose = still_pose(kUtime);
+  bad.push_back(encoded(pose));
+  pose = pose_message(kUtime);
   pose.pos[1] = std::numeric_limits<double>::quiet_NaN();
-  bad.push_back(bytes_of(pose));
+  bad.push_back(encoded(pose));
   return bad;
 }
 
@@ -94,12 +93,12 @@ std::vector<Bytes> bad_requests() {
   std::mt19937 random(9);
   std::vector<Bytes> bad;
   for (const std::size_t size : {0u, 7u, 9u, 60u, 5000u}) bad.push_back(random_bytes(random, size));
-  planemap_lcm::request_t request = status_request(1);
-  add_truncations(bad, bytes_of(request));
+  planemap_lcm::request_t request = request_message(planemap_lcm::request_t::OPERATION_STATUS, 1);
+  add_truncations(bad, encoded(request));
   request.reply_channel = "POSE";  // the service is no one's loudspeaker
-  bad.push_back(bytes_of(request));
-  request = status_request(2);
-  bad.push_back(with_number(bytes_of(request), 24, 0x7fffffff));  // length of the reply channel's name
+  bad.push_back(encoded(request));
+  request = request_message(planemap_lcm::request_t::OPERATION_STATUS, 2);
+  bad.push_back(with_number(encoded(request), 24, 0x7fffffff));  // length of the reply channel's name
   return bad;
 }
 
@@ -142,8 +141,8 @@ class Hostile : public SystemTest {
     std::int32_t seq = 0;
     const bool mapped = bus_->wait_until(
         [&] {
-          const bot_core::pose_t pose = still_pose(utime);
-          const planemap_lcm::depth_scan_t scan = wall_scan(utime, ++seq);
+          const bot_core::pose_t pose = pose_message(utime);
+          const planemap_lcm::depth_scan_t scan = wall_message(utime, ++seq);
           bus_->lcm().publish("POSE", &pose);
           bus_->lcm().publish("PLANEMAP_SCAN", &scan);
           utime += 33'333;
@@ -195,14 +194,14 @@ TEST_F(Hostile, BadRequestsDoNotKeepGoodOnesFromAnAnswer) {
   bus_->lcm().subscribe("PLANEMAP_REPLY_TEST", &ReplyEar::on_reply, &ear);
   const std::vector<planemap_lcm::reply_t>& replies = ear.replies;
   publish("PLANEMAP_REQUEST", bad_requests());
-  const planemap_lcm::request_t request = status_request(77);
+  const planemap_lcm::request_t request = request_message(planemap_lcm::request_t::OPERATION_STATUS, 77);
   bus_->lcm().publish("PLANEMAP_REQUEST", &request);
   const auto answered = [&] {
     return !replies.empty() && replies.back().request_id == 77 &&
            replies.back().status == planemap_lcm::reply_t::STATUS_OK;
   };
   EXPECT_TRUE(bus_->wait_until(answered, 10s));
-  planemap_lcm::request_t unknown = status_request(78);
+  planemap_lcm::request_t unknown = request_message(planemap_lcm::request_t::OPERATION_STATUS, 78);
   unknown.operation = 999;
   bus_->lcm().publish("PLANEMAP_REQUEST", &unknown);
   EXPECT_TRUE(bus_->wait_until([&] { return !replies.empty() && replies.back().request_id == 78; }, 10s));
@@ -216,7 +215,7 @@ TEST_F(Hostile, HandMadeDatagramsDoNoHarm) {
   ASSERT_NO_FATAL_FAILURE(start_daemon());
   std::mt19937 random(10);
   RawSender sender;
-  const Bytes scan = bytes_of(wall_scan(kUtime, 1));
+  const Bytes scan = encoded(wall_message(kUtime, 1));
   for (const std::size_t size : {1u, 4u, 7u, 20u, 1400u}) sender.send(random_bytes(random, size));
   const Bytes whole = short_datagram("PLANEMAP_SCAN", Bytes(scan.begin(), scan.begin() + 1000), 1);
   for (const std::size_t size : {4u, 8u, 9u, 15u, 21u}) {  // cut within the header and the channel's name

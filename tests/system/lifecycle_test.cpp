@@ -48,7 +48,7 @@ TEST_F(Lifecycle, SaysWhyNothingIsMappedAtMostOnceInFiveSeconds) {
   std::int32_t seq = 0;
   const auto end = std::chrono::steady_clock::now() + 14s;
   while (std::chrono::steady_clock::now() < end) {
-    const planemap_lcm::depth_scan_t scan = wall_scan(utime, ++seq);
+    const planemap_lcm::depth_scan_t scan = wall_message(utime, ++seq);
     bus_->lcm().publish("PLANEMAP_SCAN", &scan);
     utime += 100'000;
     bus_->listen_for(100ms);

@@ -4,7 +4,6 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <cerrno>
 #include <stdexcept>
@@ -31,43 +30,6 @@ void put(Bytes& bytes, const std::string& text) {
 }
 
 }  // namespace
-
-planemap_lcm::depth_scan_t wall_scan(std::int64_t utime, std::int32_t seq) {
-  constexpr std::uint16_t kDepthMm = 2000;
-  planemap_lcm::depth_scan_t scan{};
-  scan.utime = utime;
-  scan.seq = seq;
-  scan.width = 160;
-  scan.height = 120;
-  scan.fx = scan.fy = 146.25;
-  scan.cx = 80.0;
-  scan.cy = 60.0;
-  scan.depth_scale_m = 0.001;
-  scan.encoding = planemap_lcm::depth_scan_t::ENCODING_RAW;
-  for (int pixel = 0; pixel < scan.width * scan.height; ++pixel) {
-    scan.data.push_back(static_cast<std::uint8_t>(kDepthMm & 0xff));
-    scan.data.push_back(static_cast<std::uint8_t>(kDepthMm >> 8));
-  }
-  scan.size = static_cast<std::int32_t>(scan.data.size());
-  scan.crc32 = static_cast<std::int32_t>(crc32(0, scan.data.data(), static_cast<uInt>(scan.data.size())));
-  return scan;
-}
-
-bot_core::pose_t still_pose(std::int64_t utime) {
-  bot_core::pose_t pose{};
-  pose.utime = utime;
-  pose.orientation[0] = 1.0;
-  return pose;
-}
-
-planemap_lcm::request_t status_request(std::int64_t request_id) {
-  planemap_lcm::request_t request{};
-  request.request_id = request_id;
-  request.reply_channel = "PLANEMAP_REPLY_TEST";
-  request.operation = planemap_lcm::request_t::OPERATION_STATUS;
-  request.page = -1;
-  return request;
-}
 
 Bytes with_number(Bytes bytes, std::size_t at, std::int32_t number) {
   if (at + 4 > bytes.size()) throw std::out_of_range("with_number: behind the end of the message");

@@ -14,12 +14,6 @@ namespace {
 
 std::string g_why_no_network;
 
-std::filesystem::path make_scratch() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "planemap-system-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), "mkdtemp " + pattern);
-  return pattern;
-}
-
 }  // namespace
 
 std::string program(const std::string& name) {
@@ -32,12 +26,10 @@ std::string project_file(const std::string& path) {
 
 void UnroutedTest::SetUp() {
   if (!g_why_no_network.empty()) GTEST_SKIP() << g_why_no_network;
-  scratch_ = make_scratch();
 }
 
 void SystemTest::SetUp() {
   if (!g_why_no_network.empty()) GTEST_SKIP() << g_why_no_network;
-  scratch_ = make_scratch();
   add_multicast_route();
   routed_ = true;
   bus_ = std::make_unique<Bus>();
@@ -51,7 +43,6 @@ void SystemTest::TearDown() {
   daemon_.reset();
   bus_.reset();
   if (routed_) remove_multicast_route();
-  if (!scratch_.empty()) std::filesystem::remove_all(scratch_);
 }
 
 void SystemTest::start_daemon(const std::vector<std::string>& arguments, const std::vector<std::string>& before) {

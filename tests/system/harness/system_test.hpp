@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "harness/bus.hpp"
-#include "harness/process.hpp"
+#include "support/process.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace planemap::system_test {
 
@@ -41,7 +42,8 @@ class SystemTest : public testing::Test {
   /// A folder or file of the real recordings; empty where PLANEMAP_TEST_DATA does not name any.
   static std::string recording(const std::string& path);
 
-  std::filesystem::path scratch_;
+  TemporaryFolder folder_;  ///< first: it outlives the processes that write into it
+  const std::filesystem::path scratch_ = folder_.path();
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Process> daemon_;
 

@@ -1,31 +1,40 @@
-#include "wire_messages.hpp"
+#include "support/messages.hpp"
 
 #include <zlib.h>
 
 #include <cstring>
 #include <limits>
 
-namespace planemap::service {
+namespace planemap {
 
 using planemap_lcm::depth_scan_t;
 using planemap_lcm::point_scan_t;
 
-depth_scan_t wall_message(std::int64_t utime, std::int32_t seq, std::uint16_t depth_mm) {
+depth_scan_t depth_message(std::int64_t utime, std::int32_t seq, const TestCamera& camera,
+                           const std::function<std::uint16_t(int, int)>& depth_mm) {
   depth_scan_t message{};
   message.utime = utime;
   message.seq = seq;
-  message.width = 80;
-  message.height = 60;
-  message.fx = message.fy = 75.0;
-  message.cx = 40.0;
-  message.cy = 30.0;
+  message.width = camera.width;
+  message.height = camera.height;
+  message.fx = message.fy = camera.focal_px;
+  message.cx = camera.width / 2.0;
+  message.cy = camera.height / 2.0;
   message.depth_scale_m = 0.001;
   message.encoding = depth_scan_t::ENCODING_RAW;
-  const std::vector<std::uint16_t> depth(80 * 60, depth_mm);
-  message.data.resize(2 * depth.size());
-  std::memcpy(message.data.data(), depth.data(), message.data.size());
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const std::uint16_t depth = depth_mm(u, v);
+      message.data.push_back(static_cast<std::uint8_t>(depth & 0xffu));
+      message.data.push_back(static_cast<std::uint8_t>(depth >> 8u));
+    }
+  }
   stamp_checksum(message);
   return message;
+}
+
+depth_scan_t wall_message(std::int64_t utime, std::int32_t seq, std::uint16_t depth_mm) {
+  return depth_message(utime, seq, TestCamera{}, [depth_mm](int, int) { return depth_mm; });
 }
 
 depth_scan_t zipped(depth_scan_t message) {
@@ -89,4 +98,4 @@ planemap_lcm::request_t request_message(std::int16_t operation, std::int64_t req
   return message;
 }
 
-}  // namespace planemap::service
+}  // namespace planemap

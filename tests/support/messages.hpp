@@ -2,12 +2,13 @@
 
 #include <bot_core/pose_t.hpp>
 #include <cstdint>
+#include <functional>
 #include <planemap_lcm/depth_scan_t.hpp>
 #include <planemap_lcm/point_scan_t.hpp>
 #include <planemap_lcm/request_t.hpp>
 #include <vector>
 
-namespace planemap::service {
+namespace planemap {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -19,8 +20,18 @@ Bytes encoded(const Message& message) {
   return bytes;
 }
 
-/// A depth_scan_t of a small camera (80 x 60 pixels, f = 75 pixels) that looks straight at a wall, with a right
-/// checksum.
+/// A camera, its optical axis through the middle of the picture.
+struct TestCamera {
+  int width = 80;   ///< pixels
+  int height = 60;  ///< pixels
+  double focal_px = 75.0;
+};
+
+/// A depth_scan_t with a right checksum.
+/// @param depth_mm  depth along z at pixel u, v
+planemap_lcm::depth_scan_t depth_message(std::int64_t utime, std::int32_t seq, const TestCamera& camera,
+                                         const std::function<std::uint16_t(int, int)>& depth_mm);
+/// A small camera that looks straight at a wall.
 planemap_lcm::depth_scan_t wall_message(std::int64_t utime, std::int32_t seq, std::uint16_t depth_mm = 1000);
 /// The same pixels through zlib.
 planemap_lcm::depth_scan_t zipped(planemap_lcm::depth_scan_t message);
@@ -36,4 +47,4 @@ bot_core::pose_t pose_message(std::int64_t utime, double x_m = 0.0);
 
 planemap_lcm::request_t request_message(std::int16_t operation, std::int64_t request_id = 7, std::int32_t page = -1);
 
-}  // namespace planemap::service
+}  // namespace planemap

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace planemap::system_test {
+namespace planemap {
 
 /// A program that a test starts. It ends with the test, whatever happens: killed by the destructor, and by the kernel
 /// if the test dies.
@@ -52,7 +52,11 @@ struct Finished {
 Finished run_program(const std::vector<std::string>& arguments, const std::filesystem::path& scratch,
                      std::chrono::milliseconds limit);
 
+/// Runs a command of the shell's to its end, ten minutes at most.
+/// @param scratch  folder for its output
+Finished run_in_shell(const std::string& command, const std::filesystem::path& scratch);
+
 /// The file's whole content; empty if there is none.
 std::string read_file(const std::filesystem::path& path);
 
-}  // namespace planemap::system_test
+}  // namespace planemap

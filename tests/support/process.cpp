@@ -1,4 +1,4 @@
-#include "harness/process.hpp"
+#include "support/process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace planemap::system_test {
+namespace planemap {
 namespace {
 
 /// In the child, between fork and exec: only calls that are safe there.
@@ -122,9 +122,13 @@ Finished run_program(const std::vector<std::string>& arguments, const std::files
   return {exit_code_of(status), read_file(out), read_file(err)};
 }
 
+Finished run_in_shell(const std::string& command, const std::filesystem::path& scratch) {
+  return run_program({"/bin/sh", "-c", "exec " + command}, scratch, std::chrono::minutes(10));
+}
+
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-}  // namespace planemap::system_test
+}  // namespace planemap
