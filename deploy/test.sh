@@ -6,12 +6,13 @@ set -euo pipefail
 
 usage() {
   cat <<'USAGE'
-Usage: test.sh [--no-install] [--preset NAME] [--only FOLDER]... [-- CTEST_ARGUMENT...]
+Usage: test.sh [--no-install] [--preset NAME] [--only TESTS]... [-- CTEST_ARGUMENT...]
 
 Installs the packages, builds planemap with its tests and runs all of them through CTest.
 
   --preset NAME   CMake preset: release (default), dev (asserts, warnings are errors), asan, tsan
-  --only FOLDER   build and run only the tests of tests/FOLDER (core, service, clients, system, ...); may be repeated
+  --only TESTS    build and run only the tests of a folder of tests/ (core, service, clients, system, ...), or one program of
+                  it (service/mapping_test); may be repeated
   --no-install    take the packages as they are
   -h, --help      this text
   -- ARGUMENT...  handed to ctest, for instance: -- -R Plane
@@ -55,9 +56,10 @@ main() {
   cmake --preset "$preset" -DPLANEMAP_BUILD_TESTS=ON
   local filter=()
   if ((${#only[@]})); then
-    targets=(--target "${only[@]/#/tests_}")
+    mapfile -t targets < <(printf '%s\n' "${only[@]}" | sed 's#^[^/]*$#tests_&#; s#.*/##')
+    targets=(--target "${targets[@]}")
     label_pattern=$(IFS='|'; echo "${only[*]}")
-    filter=(--label-regex "^($label_pattern)\$")
+    filter=(--label-regex "^($label_pattern)(/|\$)")
   fi
   cmake --build --preset "$preset" --parallel "$jobs" "${targets[@]}"
 
