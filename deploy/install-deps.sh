@@ -64,6 +64,7 @@ readonly TEST_PACKAGES=(
   libgtest-dev
   libxml2-utils       # xmllint: is the floor plan well-formed?
   liblcm-bin          # lcm-logplayer, lcm-logger
+  liboctomap-dev      # a peer, for planemap-bench
   nftables            # loses datagrams on purpose
   python3             # run-clang-tidy
   shellcheck

@@ -1,0 +1,125 @@
+// planemap-bench: planemap beside its peers, frame by frame in one run, on one thread.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <planemap/simulation/simulated_source.hpp>
+#include <planemap/sources/open_folder.hpp>
+
+#include "bench_frames.hpp"
+#include "bench_report.hpp"
+#include "contestant.hpp"
+
+namespace planemap::benchmark {
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kWrongUse = 2;
+
+struct Arguments {
+  std::string dataset;
+  std::uint64_t seed = 1;
+  std::size_t frames = 300;
+  SimdTarget simd = SimdTarget::kAuto;
+  bool alone = false;
+  bool json = false;
+};
+
+void define_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("--dataset", arguments.dataset, "frames of a 7-Scenes or TUM RGB-D folder; else a simulated apartment")
+      ->type_name("DIR");
+  app.add_option("--seed", arguments.seed, "of the simulated apartment")->capture_default_str();
+  app.add_option("--frames", arguments.frames, "how many, at most")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--simd", arguments.simd, "planemap's instruction set")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SimdTarget>{{"auto", SimdTarget::kAuto},
+                                                                            {"avx2", SimdTarget::kAvx2},
+                                                                            {"sse4", SimdTarget::kSse4},
+                                                                            {"neon", SimdTarget::kNeon},
+                                                                            {"scalar", SimdTarget::kScalar}}));
+  app.add_flag("--alone", arguments.alone, "planemap and the reference loop only");
+  app.add_flag("--json", arguments.json, "one object instead of the table");
+  app.footer(
+      "Each frame goes through all programs before the next one does, so that a slow moment of the machine hits them "
+      "alike:\n"
+      "compare ratios, not milliseconds. Exit codes: 0 done, 1 failed, 2 wrong use.");
+}
+
+std::unique_ptr<sources::FrameSource> open_source(const Arguments& arguments) {
+  if (arguments.dataset.empty()) {
+    simulation::SimulationConfig scene;
+    scene.seed = arguments.seed;
+    scene.frames = arguments.frames;
+    return std::make_unique<simulation::SimulatedSource>(scene);
+  }
+  auto source = sources::open_folder(arguments.dataset);
+  if (!source) throw std::runtime_error(source.error().message);
+  return std::move(*source);
+}
+
+std::vector<std::unique_ptr<Contestant>> contestants(const MapperConfig& config, bool alone) {
+  std::vector<std::unique_ptr<Contestant>> all;
+  all.push_back(make_planemap(config));
+  all.push_back(make_reference(config.sensor, config.grid.cell_size_m));
+  if (alone) return all;
+  all.push_back(make_pcl_voxel_grid(config.grid.cell_size_m));
+  all.push_back(make_pcl_approximate_voxel_grid(config.grid.cell_size_m));
+  all.push_back(make_pcl_organized_multi_plane(config.sensor));
+  all.push_back(make_octomap_endpoints(config.grid.cell_size_m));
+  return all;
+}
+
+void measure(const Arguments& arguments) {
+  MapperConfig config = preset(Preset::kBest);
+  config.core.simd = arguments.simd;
+  if (!is_supported(arguments.simd))
+    throw std::runtime_error("--simd: this machine does not have that instruction set");
+  const auto source = open_source(arguments);
+  const std::vector<BenchFrame> frames = read_frames(*source, arguments.frames, config.sensor);
+  if (frames.empty()) throw std::runtime_error("there is no frame to measure with");
+  BenchReport report;
+  const auto all = contestants(config, arguments.alone);
+  std::size_t points = 0;
+  for (const BenchFrame& frame : frames) {
+    points += frame.xyz_world_m.size() / 3;
+    for (const auto& contestant : all) report.add(contestant->take(frame));
+  }
+  points /= frames.size();
+  if (arguments.json) {
+    std::printf("%s\n", report.json(frames.size(), points).c_str());
+    return;
+  }
+  const Machine machine = this_machine();
+  std::printf("%s; %s %s; PCL %s, OctoMap %s\n%zu frames of %zu points\n\n%s", machine.cpu.c_str(),
+              machine.compiler.c_str(), machine.flags.c_str(), machine.pcl.c_str(), machine.octomap.c_str(),
+              frames.size(), points, report.table().c_str());
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("planemap-bench: the time that planemap takes for a scan, by stage, beside its peers", "planemap-bench");
+  Arguments arguments;
+  define_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kWrongUse;
+  }
+  measure(arguments);
+  return kDone;
+}
+
+}  // namespace
+
+}  // namespace planemap::benchmark
+
+int main(int argc, char** argv) {
+  try {
+    return planemap::benchmark::run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "planemap-bench: %s\n", e.what());
+    return 1;
+  }
+}
