@@ -5,6 +5,7 @@
 #include <cctype>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -44,7 +45,9 @@ Service::~Service() {
 }
 
 void Service::subscribe(const std::string& channel) {
-  bus_.subscribe(escaped(channel), &Service::on_message, this);
+  if (bus_.subscribe(escaped(channel), &Service::on_message, this) == nullptr) {
+    throw std::runtime_error("LCM cannot subscribe to " + channel);
+  }
 }
 
 void Service::on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {

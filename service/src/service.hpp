@@ -22,6 +22,7 @@ class Service {
   /// Subscribes and starts. The bus is handed in, so tests pass "memq://"; it must outlive the service, and nobody may
   /// handle it any more once the service is gone: its subscriptions stay, as LCM cannot end them safely.
   /// @param epoch  names this life of the map, below 2^53
+  /// @throws std::runtime_error if the bus lets it subscribe to nothing
   Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch);
   ~Service();
   Service(const Service&) = delete;

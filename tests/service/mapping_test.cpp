@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <future>
 #include <memory>
+#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -238,6 +242,49 @@ TEST(MappingService, ANewMapBeginsThoughItsFirstScanFellOutOfTheQueue) {
   EXPECT_EQ(mapping.snapshot()->epoch(), 78u);
   EXPECT_EQ(counters.value("map.resets"), 1);
   EXPECT_EQ(counters.value("scans.dropped.queue_full"), 1);
+}
+
+/// What is logged while it lives.
+class Log {
+ public:
+  Log() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
+  }
+  ~Log() { spdlog::set_default_logger(before_); }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+TEST(MappingService, NewMapsByTheDozenAreOneLineInTheLog) {
+  const Log log;
+  Counters counters;
+  ServiceConfig config;
+  config.queue.scans = 1000;
+  int mapped = 0;
+  std::promise<void> all_mapped;
+  MappingService mapping(config, 1, counters, [&] {
+    if (++mapped == 24) all_mapped.set_value();
+  });
+  for (std::uint64_t map_number = 0; map_number < 24; ++map_number) {
+    counters.scan_received();
+    RegisteredScan scan = empty_scan(kSecond);
+    scan.map_number = map_number;
+    mapping.push(std::move(scan));
+  }
+  all_mapped.get_future().wait();
+  mapping.stop();
+  EXPECT_EQ(counters.value("map.resets"), 23);
+  EXPECT_EQ(mapping.snapshot()->epoch(), 24u);
+  const std::string text = log.text();
+  EXPECT_NE(text.find("a new map begins, epoch 2; that of epoch 1 had 0 planes, revision 0"), std::string::npos)
+      << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
 TEST(StatusBoard, SaysThatTheMapperCannotKeepUpWhereItsQueueIsFull) {

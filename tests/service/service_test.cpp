@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <memory>
+#include <planemap/client/lcm_map_client.hpp>
 #include <planemap_lcm/planes_t.hpp>
 #include <planemap_lcm/reply_t.hpp>
 #include <planemap_lcm/status_t.hpp>
@@ -273,6 +275,28 @@ TEST_F(ServiceTest, StopsWithScansInTheQueue) {
   service_.stop();
   EXPECT_EQ(counter("scans.received"),
             counter("scans.mapped") + counter("scans.waiting") + counter("scans.dropped.shutdown"));
+}
+
+TEST_F(ServiceTest, TheClientsWholeMapIsOfOneRevisionWhileMappingGoesOn) {
+  // The bus is handled by whoever waits: the client hands the service its messages, too.
+  client::LcmMapClient client(std::shared_ptr<lcm::LCM>(&bus_, [](lcm::LCM*) {}));
+  std::int64_t revision = 0;
+  for (int i = 0; i < 10; ++i) {
+    send_wall(i, static_cast<std::uint16_t>(800 + 100 * i));  // on its way to the mapper while the client asks
+    const auto map = client.whole_map(std::chrono::seconds(30));
+    ASSERT_TRUE(map) << map.error().message;
+    std::map<std::int64_t, std::int64_t> cells;
+    for (const auto& cell : map->cells) ++cells[cell.plane_id];
+    for (const auto& plane : map->planes) EXPECT_EQ(cells[plane.id], plane.cell_count) << "plane " << plane.id;
+    EXPECT_GE(map->revision, revision);
+    revision = map->revision;
+  }
+  EXPECT_GT(revision, 0);
+}
+
+TEST(Service, RefusesABusThatLetsItHearNothing) {
+  lcm::LCM bus("nosuchprovider://");
+  EXPECT_THROW(Service(ServiceConfig{}, bus, 1), std::runtime_error);
 }
 
 TEST(OpenBus, SaysHowToMendABusThatCannotBeOpened) {

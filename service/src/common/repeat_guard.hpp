@@ -36,4 +36,10 @@ class RepeatGuard {
   std::map<std::string, Entry> kinds_;
 };
 
+/// For behind a message of which others were held back.
+/// @param count  as pass() gave it
+inline std::string repeats_text(int count) {
+  return count > 1 ? " (" + std::to_string(count) + " times since this was said last)" : std::string();
+}
+
 }  // namespace planemap::service

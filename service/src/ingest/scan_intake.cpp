@@ -216,8 +216,7 @@ void ScanIntake::warn_rejection(const std::string& channel, const Rejection& rej
 
 void ScanIntake::warn_once_in_a_while(const std::string& kind, const std::string& text, double host_s) {
   const int count = repeats_.pass(kind, host_s);
-  if (count == 1) warn_(text);
-  if (count > 1) warn_(fmt::format("{} ({} times since this was said last)", text, count));
+  if (count > 0) warn_(text + repeats_text(count));
 }
 
 std::vector<InputFacts> ScanIntake::facts() const {

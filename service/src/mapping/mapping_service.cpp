@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kTimedScans = 100;
 constexpr double kRateWindowS = 1.0;
+constexpr double kWarnPeriodS = 5.0;
 
 }  // namespace
 
@@ -31,6 +32,7 @@ MappingService::MappingService(const ServiceConfig& config, std::uint64_t epoch,
       on_snapshot_(std::move(on_snapshot)),
       queue_(static_cast<std::size_t>(config.queue.scans)),
       mapper_(config_, epoch),
+      repeats_(kWarnPeriodS),
       snapshot_(mapper_.snapshot()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -74,7 +76,8 @@ void MappingService::note_busy(std::optional<double> since_host_s) {
 }
 
 void MappingService::note_error(std::string error) {
-  spdlog::error("{}", error);
+  const int count = repeats_.pass("error", steady_now_s());
+  if (count > 0) spdlog::error("{}{}", error, repeats_text(count));
   const std::lock_guard lock(mutex_);
   stats_.last_error = std::move(error);
   stats_.last_error_host_s = steady_now_s();
@@ -86,9 +89,11 @@ void MappingService::begin_new_map(std::uint64_t map_number) {
   mapper_ = Mapper(config_, epoch);
   map_number_ = map_number;
   counters_.add("map.resets");
+  const int count = repeats_.pass("reset", steady_now_s());
+  if (count == 0) return;
   const auto old = snapshot();
-  spdlog::warn("the pose jumped: a new map begins, epoch {}; that of epoch {} had {} planes, revision {}", epoch,
-               old->epoch(), old->planes().size(), old->revision());
+  spdlog::warn("the pose jumped: a new map begins, epoch {}; that of epoch {} had {} planes, revision {}{}", epoch,
+               old->epoch(), old->planes().size(), old->revision(), repeats_text(count));
 }
 
 void MappingService::map(const RegisteredScan& scan) {

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/counters.hpp"
+#include "common/repeat_guard.hpp"
 #include "config/service_config.hpp"
 #include "mapping/scan_queue.hpp"
 
@@ -70,8 +71,9 @@ class MappingService {
   Counters& counters_;
   std::function<void()> on_snapshot_;
   ScanQueue queue_;
-  Mapper mapper_;                 ///< of the mapper's thread alone, like the next
+  Mapper mapper_;                 ///< of the mapper's thread alone, like the two below
   std::uint64_t map_number_ = 0;  ///< of the map that is being made
+  RepeatGuard repeats_;
 
   mutable std::mutex mutex_;  ///< of what follows; held for copies only
   std::shared_ptr<const MapSnapshot> snapshot_;

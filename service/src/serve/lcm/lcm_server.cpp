@@ -15,11 +15,6 @@ constexpr std::size_t kMaxJobs = 16;      // answers that wait for their turn on
 constexpr double kLogPeriodS = 1.0;
 constexpr double kWarnPeriodS = 5.0;
 
-/// Behind a message of which others were held back.
-std::string repeats_text(int count) {
-  return count > 1 ? fmt::format(" ({} times since this was said last)", count) : std::string();
-}
-
 std::int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
@@ -155,9 +150,8 @@ void LcmServer::publish(const std::string& channel, const Page& bytes) {
   counters_.add("publish.failed");
   const int count = publish_repeats_.pass(channel, steady_now_s());
   if (count > 0) {
-    spdlog::warn(
-        "{} bytes could not be sent on {} ({} times since this was said last); is there a route for multicast?",
-        bytes.size(), channel, count);
+    spdlog::warn("{} bytes could not be sent on {}; is there a route for multicast?{}", bytes.size(), channel,
+                 repeats_text(count));
   }
 }
 
