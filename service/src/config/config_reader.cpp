@@ -14,8 +14,8 @@ namespace {
 
 /// Text for a person, cut where somebody put a book into a value.
 std::string shown(const std::string& text) {
-  constexpr std::size_t kMost = 60;
-  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+  constexpr int kMost = 60;
+  return text.size() <= kMost ? text : fmt::format("{:.{}}...", text, kMost);
 }
 
 /// A number with nothing before or behind it.
