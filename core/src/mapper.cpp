@@ -41,7 +41,7 @@ class Mapper::Impl {
         assigner_(config.core, config.sensor, config.grid),
         normals_(config.normals),
         local_(config.grid, config.normals, config.planes),
-        planes_(config.grid, config.planes) {}
+        planes_(config.grid, config.planes, config.pose_error) {}
 
   ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer) {
     ScanReport report;
@@ -55,7 +55,7 @@ class Mapper::Impl {
     }
     {
       const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
-      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), utime_of(scan));
+      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), {T_world_sensor, utime_of(scan)});
       assigner_.finish(grid_);
       report.local_planes = local.size();
       report.new_planes = global.new_planes;

@@ -27,9 +27,11 @@ void sort_unique(std::vector<T>& values) {
 
 }  // namespace
 
-PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes)
+PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes, const PoseErrorConfig& pose_error)
     : grid_config_(grid),
       config_(planes),
+      pose_error_(pose_error),
+      pose_variance_m2_(pose_error.point_variance_m2()),
       max_angle_rad_(planes.normal_angle_deg * kRadPerDeg),
       core_cosine_(std::cos(planes.core_angle_deg * kRadPerDeg)),
       states_(1),
@@ -48,7 +50,9 @@ void PlaneMap::refit(PlaneSlot slot) {
 // Membership of cells.
 
 double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
-  return std::max(config_.cell_offset_m, config_.slab_sigmas * std::sqrt(cell.sums.point_variance(fit.plane.normal())));
+  // Poses that wander move what they see: without their part the band cuts off what it is to hold.
+  const double variance_m2 = cell.sums.point_variance(fit.plane.normal()) + pose_variance_m2_;
+  return std::max(config_.cell_offset_m, config_.slab_sigmas * std::sqrt(variance_m2));
 }
 
 float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
@@ -59,7 +63,8 @@ float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const Plan
   // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
   // scatter about the plane by more than their errors, and its normal turns away.
   const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
-  const double expected_m2 = cell.sums.point_variance(normal) + config_.core_floor_m * config_.core_floor_m;
+  const double expected_m2 =
+      cell.sums.point_variance(normal) + config_.core_floor_m * config_.core_floor_m + pose_variance_m2_;
   const double ratio = cell.sums.points.mean_square_distance(normal, d_m) / expected_m2;
   if (ratio > config_.core_sigmas * config_.core_sigmas) return 0.0F;
   if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < core_cosine_) return 0.0F;
@@ -204,6 +209,9 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
     coarse_.add(centre_m, survivor);
   }
   into.statistics.add(from.statistics);
+  if (pose_error_.any()) {
+    into.pose_evidence.add(from.pose_evidence, from.statistics.origin_m() - into.statistics.origin_m(), pose_error_);
+  }
   into.first_seen_utime = std::min(into.first_seen_utime, from.first_seen_utime);
   into.last_seen_utime = std::max(into.last_seen_utime, from.last_seen_utime);
   into.merged.push_back(id_of(gone));
@@ -253,9 +261,9 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
 }
 
 GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> local,
-                             std::span<const CellChange> changes, std::int64_t utime) {
+                             std::span<const CellChange> changes, const ScanPose& scan) {
   GlobalReport report;
-  for (const LocalPlane& plane : local) merge_local(grid, plane, utime, report);
+  for (const LocalPlane& plane : local) merge_local(grid, plane, scan.utime, report);
   if (config_.adoption) adopt(grid, changes);
   if (config_.bridge_gap_m > 0.0) bridge(grid, report);
   dissolve_small(grid, report);
@@ -263,12 +271,30 @@ GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> lo
     if (!states_[slot]) continue;
     State& plane = state(slot);
     plane.touched = false;
-    plane.last_seen_utime = std::max(plane.last_seen_utime, utime);
+    plane.last_seen_utime = std::max(plane.last_seen_utime, scan.utime);
     reweigh(grid, slot);
     refit(slot);
   }
   touched_.clear();
+  if (pose_error_.any()) note_pose(grid, changes, scan);
   return report;
+}
+
+void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan) {
+  std::vector<PlaneSlot> seen;
+  for (const CellChange& change : changes) {
+    const Cell& cell = grid.cell(change.cell);
+    if (cell.plane == kNoSlot || !(cell.plane_weight > 0.0F)) continue;
+    State& plane = state(cell.plane);
+    if (plane.seen.weight <= 0.0) seen.push_back(cell.plane);
+    plane.seen.add(change.added.points, static_cast<double>(cell.plane_weight),
+                   grid.geometric_centre_m(change.cell) - plane.statistics.origin_m());
+  }
+  for (const PlaneSlot slot : seen) {
+    State& plane = state(slot);
+    plane.pose_evidence.add(plane.seen, plane.fit.plane.normal(), plane.statistics.origin_m(), scan, pose_error_);
+    plane.seen = Moments{};
+  }
 }
 
 // What lifts the paper.
@@ -385,7 +411,11 @@ PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
   record.id = id_of(slot);
   record.plane = plane.fit.plane;
   // The weight that the fit was made from: a plane whose core cells have all left stands as it was last fitted.
-  record.covariance = covariance_of(plane.fit, plane.fit.weight, config_.offset_floor_m);
+  Eigen::Matrix3d covariance = sensor_covariance(plane.fit, config_.offset_floor_m);
+  if (pose_error_.any()) {
+    covariance += plane.pose_evidence.covariance(plane.fit, plane.statistics.origin_m(), pose_error_);
+  }
+  record.covariance = covariance_of(plane.fit, covariance);
   record.centroid_m = plane.fit.centroid_m;
   record.cell_count = static_cast<std::uint32_t>(plane.statistics.cell_count());
   record.point_count = static_cast<std::uint64_t>(plane.statistics.point_count());

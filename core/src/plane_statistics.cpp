@@ -104,19 +104,22 @@ double point_weight(const CellSums& sums, const Eigen::Vector3d& normal) {
   return 1.0 / std::max(sums.point_variance(normal), kLeastVariance);
 }
 
-Eigen::Matrix4d covariance_of(const PlaneFit& fit, double weight, double offset_floor_m) {
+Eigen::Matrix3d sensor_covariance(const PlaneFit& fit, double offset_floor_m) {
   // The normal equations of (tilt_1, tilt_2, offset at the centroid) are diagonal in the principal axes.
-  Eigen::Matrix<double, 4, 3> jacobian;
-  jacobian << fit.tangent_1, fit.tangent_2, Eigen::Vector3d::Zero(),  //
-      -fit.centroid_m.dot(fit.tangent_1), -fit.centroid_m.dot(fit.tangent_2), 1.0;
   const double floor2 = offset_floor_m * offset_floor_m;
   const auto tilt_variance = [&](double spread_m2) {
     const double half_extent2 = 3.0 * spread_m2;  // a uniform strip of half length h has the variance h^2 / 3
-    return 1.0 / (weight * spread_m2) + floor2 / half_extent2;
+    return 1.0 / (fit.weight * spread_m2) + floor2 / half_extent2;
   };
-  const Eigen::Vector3d variances(tilt_variance(fit.spread_1_m2), tilt_variance(fit.spread_2_m2),
-                                  1.0 / weight + floor2);
-  return jacobian * variances.asDiagonal() * jacobian.transpose();
+  return Eigen::Vector3d(tilt_variance(fit.spread_1_m2), tilt_variance(fit.spread_2_m2), 1.0 / fit.weight + floor2)
+      .asDiagonal();
+}
+
+Eigen::Matrix4d covariance_of(const PlaneFit& fit, const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix<double, 4, 3> jacobian;
+  jacobian << fit.tangent_1, fit.tangent_2, Eigen::Vector3d::Zero(),  //
+      -fit.centroid_m.dot(fit.tangent_1), -fit.centroid_m.dot(fit.tangent_2), 1.0;
+  return jacobian * covariance * jacobian.transpose();
 }
 
 }  // namespace planemap

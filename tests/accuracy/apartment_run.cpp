@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numbers>
+#include <numeric>
 #include <planemap/mapper.hpp>
 #include <planemap/simulation/simulated_source.hpp>
 #include <vector>
@@ -69,6 +70,15 @@ Summary summarise(std::span<const Run> runs) {
   const auto middle = nees.begin() + static_cast<std::ptrdiff_t>(nees.size() / 2);
   std::nth_element(nees.begin(), middle, nees.end());
   s.nees_median = *middle;
+  const auto count = static_cast<double>(nees.size());
+  const auto share = [&](double low, double high) {
+    return static_cast<double>(
+               std::count_if(nees.begin(), nees.end(), [&](double n) { return n >= low && n < high; })) /
+           count;
+  };
+  s.nees_mean = std::accumulate(nees.begin(), nees.end(), 0.0) / count;
+  s.nees_below = share(0.0, 7.81);
+  s.nees_within = share(0.216, 9.35);
   return s;
 }
 

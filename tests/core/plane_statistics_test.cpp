@@ -116,7 +116,7 @@ TEST(Covariance, IsTheScatterOfRepeatedFits) {
     statistics.add(cell_of(points, centre, kSigma), centre);
     const auto fit = statistics.fit(true);
     ASSERT_TRUE(fit.has_value());
-    stated = covariance_of(*fit, statistics.weight(), 0.0);
+    stated = covariance_of(*fit, sensor_covariance(*fit, 0.0));
     Eigen::Vector4d error;
     error << fit->plane.normal() - Vector3d::UnitZ(), fit->plane.d() + 1.0;
     errors.push_back(error);
@@ -134,7 +134,8 @@ TEST(Covariance, HasRankThreeAndItsFloor) {
   fit.plane = Plane::through(fit.centroid_m, Vector3d::UnitZ());
   fit.spread_1_m2 = 1.0 / 3.0;  // half extents of 1 m and 2 m
   fit.spread_2_m2 = 4.0 / 3.0;
-  const Eigen::Matrix4d c = covariance_of(fit, /*weight=*/1e18, /*offset_floor_m=*/1e-3);
+  fit.weight = 1e18;
+  const Eigen::Matrix4d c = covariance_of(fit, sensor_covariance(fit, /*offset_floor_m=*/1e-3));
   EXPECT_NEAR(std::sqrt(c(0, 0)), 1e-3, 1e-6);                   // 1 mm over 1 m
   EXPECT_NEAR(std::sqrt(c(1, 1)), 0.5e-3, 1e-6);                 // 1 mm over 2 m
   EXPECT_NEAR(c(2, 2), 0.0, 1e-15);                              // |n| = 1

@@ -175,6 +175,29 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"offset_floor_m", "no plane is known better than this", 0.0, 1.0}, c.offset_floor_m);
 }
 
+/// How wrong the poses of scans may be: a first-order Gauss-Markov process along and about each axis of the sensor. All
+/// 0: poses are exact, as the paper assumes.
+struct PoseErrorConfig {
+  double sigma_m = 0.0;
+  double sigma_rad = 0.0;
+  double correlation_s = 0.0;
+
+  bool any() const { return sigma_m > 0.0 || sigma_rad > 0.0; }
+  /// Variance along any direction that these errors give a point at a usual distance.
+  double point_variance_m2() const {
+    constexpr double kUsualRangeM = 2.5;
+    return sigma_m * sigma_m + kUsualRangeM * kUsualRangeM * sigma_rad * sigma_rad;
+  }
+};
+
+template <MaybeConst<PoseErrorConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"sigma_m", "standard error of a pose's position along each axis; 0: exact", 0.0, 10.0}, c.sigma_m);
+  visit(FieldInfo{"sigma_rad", "standard error of a pose's rotation about each axis; 0: exact", 0.0, 1.0}, c.sigma_rad);
+  visit(FieldInfo{"correlation_s", "time in which these errors change; 0: each pose errs on its own", 0.0, 3600.0},
+        c.correlation_s);
+}
+
 /// All of the method. Values have been checked by whoever read them; the mapper asserts no more than their ranges.
 struct MapperConfig {
   CoreConfig core;
@@ -182,6 +205,7 @@ struct MapperConfig {
   GridConfig grid;
   NormalConfig normals;
   PlaneConfig planes;
+  PoseErrorConfig pose_error;
 };
 
 enum class Preset {

@@ -7,6 +7,7 @@
 #include <planemap/local_planes.hpp>
 #include <planemap/plane.hpp>
 #include <planemap/plane_statistics.hpp>
+#include <planemap/pose_evidence.hpp>
 #include <planemap/uncertain_grid.hpp>
 #include <span>
 #include <unordered_map>
@@ -50,7 +51,7 @@ struct GlobalReport {
 /// steps depends on the scans alone, so equal inputs give equal maps.
 class PlaneMap {
  public:
-  PlaneMap(const GridConfig& grid, const PlaneConfig& planes);
+  PlaneMap(const GridConfig& grid, const PlaneConfig& planes, const PoseErrorConfig& pose_error);
 
   /// Takes a cell's evidence out of its plane, before the cell changes; attach() brings it back.
   void detach(const UncertainGrid& grid, CellRef ref);
@@ -59,7 +60,7 @@ class PlaneMap {
 
   /// Merges the local planes of a scan into the global ones: absorbed, merge, or new.
   GlobalReport merge(UncertainGrid& grid, std::span<const LocalPlane> local, std::span<const CellChange> changes,
-                     std::int64_t utime);
+                     const ScanPose& scan);
 
   /// Records of the planes that changed since the last call, made anew; `records` holds all, by id.
   /// @return whether anything changed
@@ -75,6 +76,8 @@ class PlaneMap {
     explicit State(const Eigen::Vector3d& origin_m) : statistics(origin_m) {}
     PlaneStatistics statistics;
     PlaneFit fit;
+    PoseEvidence pose_evidence;  ///< empty where poses are exact
+    Moments seen;                ///< by this scan, about the statistics' origin
     std::vector<CellRef> cells;  ///< also cells that have left; a cell's own label decides
     std::vector<PlaneId> merged;
     std::int64_t first_seen_utime = 0;
@@ -109,10 +112,13 @@ class PlaneMap {
   void bridge(UncertainGrid& grid, GlobalReport& report);
   PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const;
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
+  void note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan);
   PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;
 
   GridConfig grid_config_;
   PlaneConfig config_;
+  PoseErrorConfig pose_error_;
+  double pose_variance_m2_;  ///< what a pose's error does to a point's distance to its plane
   double max_angle_rad_;
   double core_cosine_;
   std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed

@@ -39,6 +39,7 @@ class PlaneStatistics {
   /// Takes in all that another set holds.
   void add(const PlaneStatistics& other);
 
+  const Eigen::Vector3d& origin_m() const { return origin_m_; }  ///< that its moments are about, world frame
   std::size_t cell_count() const { return static_cast<std::size_t>(cells_); }
   double point_count() const { return points_; }
   double core_point_count() const { return core_points_; }
@@ -83,9 +84,13 @@ double squared_chord(double angle_rad);
 /// Weight of each point of a cell in the plane's moments: 1 / sigma^2 along the normal.
 double point_weight(const CellSums& sums, const Eigen::Vector3d& normal);
 
-/// Covariance of (nx, ny, nz, d) from a fit whose weights are 1 / sigma^2; rank 3.
+/// Covariance of (tilt_1, tilt_2, offset at the centroid) of a fit whose weights are 1 / sigma^2, about its tangents;
+/// what the sensor's errors make of it. Radians and metres.
 /// @param offset_floor_m  standard error of the offset that is added to what the points say; the tilts get it at half
 /// the extent
-Eigen::Matrix4d covariance_of(const PlaneFit& fit, double weight, double offset_floor_m);
+Eigen::Matrix3d sensor_covariance(const PlaneFit& fit, double offset_floor_m);
+
+/// Covariance of (nx, ny, nz, d) from one of (tilt_1, tilt_2, offset at the centroid); rank 3.
+Eigen::Matrix4d covariance_of(const PlaneFit& fit, const Eigen::Matrix3d& covariance);
 
 }  // namespace planemap

@@ -50,6 +50,7 @@ Expected<ServiceConfig> load_config(const ConfigSources& sources) {
   for (const auto& assignment : sources.overrides) apply_override(assignment, config, problems);
   check_config(config, problems);
   if (!problems.empty()) return fail(problems.text());
+  config.mapper.pose_error = config.pose.error;
   return config;
 }
 

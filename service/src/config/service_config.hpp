@@ -99,6 +99,7 @@ struct PoseConfig {
   double jump_m = 1.0;      ///< a step between two poses above this is a jump: counted and said
   double jump_deg = 45.0;
   std::string jump = "continue";  ///< what a jump does to the map: nothing, or "reset"
+  PoseErrorConfig error;          ///< load_config hands it to the mapper
 
   bool resets_map() const { return jump == "reset"; }
 };
@@ -118,6 +119,7 @@ void visit_fields(Config& c, Visit&& visit) {
         c.jump_deg);
   visit(FieldInfo{"jump", "after a jump the same map goes on, or a new one begins, of a new epoch"}, c.jump,
         Words{"continue", "reset"});
+  visit_fields(c.error, visit);
 }
 
 struct QueueConfig {
