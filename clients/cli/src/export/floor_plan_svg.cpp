@@ -141,15 +141,17 @@ class Drawing {
   /// Lines a metre apart: distances can be read anywhere, not only at the scale bar.
   void draw_grid() {
     const double right_x = right();
-    for (double x = kMargin; x <= right_x + 0.5; x += scale_) {
+    const auto columns = static_cast<int>((right_x + 0.5 - kMargin) / scale_);
+    for (int i = 0; i <= columns; ++i) {
       print(R"(<path class="grid" d="M{:.1f} {:.1f}V{:.1f}"/>)"
             "\n",
-            x, top(), bottom());
+            kMargin + i * scale_, top(), bottom());
     }
-    for (double y = bottom(); y >= top() - 0.5; y -= scale_) {
+    const auto rows = static_cast<int>((bottom() - (top() - 0.5)) / scale_);
+    for (int i = 0; i <= rows; ++i) {
       print(R"(<path class="grid" d="M{:.1f} {:.1f}H{:.1f}"/>)"
             "\n",
-            kMargin, y, right_x);
+            kMargin, bottom() - i * scale_, right_x);
     }
   }
 

@@ -25,6 +25,7 @@ std::vector<float> normal_quantiles() {
     sum_of_squares += values[i] * values[i];
   }
   std::vector<float> scaled;
+  scaled.reserve(kQuantiles);
   for (const double value : values)
     scaled.push_back(static_cast<float>(value / std::sqrt(sum_of_squares / kQuantiles)));
   return scaled;
@@ -60,9 +61,10 @@ KinectSensor::KinectSensor(const DepthNoiseConfig& config, const PinholeIntrinsi
   require(config.max_range_m < 65.0, "max_range_m must be less than 65, which 16 bits of millimetres hold");
   if (config.scale == 0.0 || config.disparity_step_px == 0.0) return;
   const double most_px = config.min_range_m > 0.0 ? disparity_px_m_ / config.min_range_m : kMostDisparityPx;
-  for (double disparity_px = 0.0; disparity_px < most_px + config.disparity_step_px;
-       disparity_px += config.disparity_step_px) {
-    millimetres_of_step_.push_back(to_millimetres(disparity_px));
+  const auto steps = static_cast<std::size_t>(std::ceil(most_px / config.disparity_step_px)) + 1;
+  millimetres_of_step_.reserve(steps);
+  for (std::size_t i = 0; i < steps; ++i) {
+    millimetres_of_step_.push_back(to_millimetres(static_cast<double>(i) * config.disparity_step_px));
   }
 }
 
@@ -116,7 +118,7 @@ std::vector<std::uint16_t> KinectSensor::measure(const RenderedImage& image, std
         continue;
       }
       const float disparity_px = disparity_px_m / image.depth_m[at] + sigma_px * quantiles_[bits % kQuantiles];
-      const auto step = static_cast<std::int32_t>(disparity_px * steps_per_px + 0.5F);
+      const auto step = static_cast<std::int32_t>(std::lround(disparity_px * steps_per_px));
       if (step > 0 && step < static_cast<std::int32_t>(millimetres_of_step_.size()))
         depth[at] = millimetres_of_step_[step];
     }

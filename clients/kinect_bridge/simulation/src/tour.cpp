@@ -148,8 +148,10 @@ class TourPlanner {
       const Eigen::Vector2d leg_m = path_m[i] - path_m[i - 1];
       const double length_m = leg_m.norm();
       double done_m = left_m;
-      for (; done_m <= length_m; done_m += step_m)
+      while (done_m <= length_m) {
         look(Eigen::Vector2d(path_m[i - 1] + done_m / length_m * leg_m), leg_m);
+        done_m += step_m;
+      }
       left_m = done_m - length_m;
     }
   }
@@ -191,8 +193,9 @@ class TourPlanner {
     const Eigen::Vector2d to_target_m = target_m - position_m_;
     const double pitch_rad = std::atan2(view.point_m.z() - kCameraHeightM, to_target_m.norm());
     turn_to(direction_rad(to_target_m));
-    for (double stay_s = 0.0; stay_s < kViewS; stay_s += kSampleS) {
-      sample(position_m_, direction_rad(to_target_m) + rad(12.0) * wave(stay_s, kViewS),
+    const auto steps = static_cast<int>(kViewS / kSampleS);
+    for (int i = 0; i <= steps; ++i) {
+      sample(position_m_, direction_rad(to_target_m) + rad(12.0) * wave(i * kSampleS, kViewS),
              std::clamp(pitch_rad, rad(-40.0), rad(40.0)));
     }
   }
@@ -220,7 +223,7 @@ Tour::Tour(const std::vector<Sample>& raw)
     for (int k = -reach; k <= reach; ++k) {
       const int rounds = i + k < 0 ? -1 : (i + k) / count;  // the neighbours of the ends are in the next round
       const Sample& neighbour = raw[static_cast<std::size_t>(i + k - rounds * count)];
-      const double weight = weights[static_cast<std::size_t>(k + reach)] / weight_sum;
+      const double weight = weights[k + reach] / weight_sum;
       samples_[i].position_m += weight * neighbour.position_m;
       samples_[i].yaw_rad += weight * (neighbour.yaw_rad + rounds * turn_rad_);
       samples_[i].pitch_rad += weight * neighbour.pitch_rad;
