@@ -65,8 +65,8 @@ void PoseEvidence::add(const PoseEvidence& other, const Eigen::Vector3d& shift_m
   Eigen::Matrix4d to_ours = Eigen::Matrix4d::Identity();  // a = to_ours * (the other's a)
   to_ours.block<3, 1>(0, 3) = shift_m;
   const Eigen::Matrix4d their_spread = to_ours * other.spread_ * to_ours.transpose();
-  // The covariance of a sum is at most (1 + r) of one and (1 + 1/r) of the other, for any r: here the r that is best for
-  // the offset, whose element does not depend on the origin.
+  // The covariance of a sum is at most (1 + r) of one and (1 + 1/r) of the other, for any r: here the r that is best
+  // for the offset, whose element does not depend on the origin.
   const double ours = spread_(3, 3);
   const double theirs = their_spread(3, 3);
   if (ours > 0.0 && theirs > 0.0) {
