@@ -72,7 +72,9 @@ std::optional<PlaneFit> PlaneStatistics::fit_pooled() const {
                   spreads(2),
                   std::max(spreads(0), 0.0),
                   normal_deviation_rad(),
-                  pooled_.weight};
+                  pooled_.weight,
+                  1.0 / (pooled_.weight * spreads(1)),
+                  1.0 / (pooled_.weight * spreads(2))};
 }
 
 std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
@@ -80,18 +82,27 @@ std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
   const Eigen::Vector3d normal = normal_sum_.normalized();
   const Eigen::Vector3d centroid = origin_m_ + centres_.mean();
   const Eigen::Matrix3d scatter = centres_.covariance();
-  const Eigen::Vector3d any = std::abs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
-  Eigen::Vector3d t1 = normal.cross(any).normalized();
-  Eigen::Vector3d t2 = normal.cross(t1);
-  double spread_1 = t1.dot(scatter * t1);
-  double spread_2 = t2.dot(scatter * t2);
-  if (spread_1 > spread_2) {
-    std::swap(t1, t2);
-    std::swap(spread_1, spread_2);
-  }
-  return PlaneFit{
-      Plane::through(centroid, normal), centroid,      t1, t2, spread_1, spread_2, normal.dot(scatter * normal),
-      normal_deviation_rad(),           pooled_.weight};
+  // Principal axes within the plane: of the scatter with its part along the normal taken away.
+  const Eigen::Matrix3d into_plane = Eigen::Matrix3d::Identity() - normal * normal.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(into_plane * scatter * into_plane);
+  Eigen::Vector3d t2 = into_plane * solver.eigenvectors().col(2);
+  if (t2.norm() < 0.5) t2 = normal.unitOrthogonal();  // a single cell spans nothing
+  t2.normalize();
+  const Eigen::Vector3d t1 = t2.cross(normal);
+  // The plane's normal is the mean of its cells', and is as uncertain as Eq. 3 says of a mean.
+  const double deviation = normal_deviation_rad();
+  return PlaneFit{Plane::through(centroid, normal),
+                  centroid,
+                  t1,
+                  t2,
+                  std::max(t1.dot(scatter * t1), 0.0),
+                  std::max(t2.dot(scatter * t2), 0.0),
+                  normal.dot(scatter * normal),
+                  deviation,
+                  pooled_.weight,
+                  deviation * deviation,
+                  deviation * deviation};
 }
 
 double squared_chord(double angle_rad) {
@@ -107,11 +118,12 @@ double point_weight(const CellSums& sums, const Eigen::Vector3d& normal) {
 Eigen::Matrix3d sensor_covariance(const PlaneFit& fit, double offset_floor_m) {
   // The normal equations of (tilt_1, tilt_2, offset at the centroid) are diagonal in the principal axes.
   const double floor2 = offset_floor_m * offset_floor_m;
-  const auto tilt_variance = [&](double spread_m2) {
-    const double half_extent2 = 3.0 * spread_m2;  // a uniform strip of half length h has the variance h^2 / 3
-    return 1.0 / (fit.weight * spread_m2) + floor2 / half_extent2;
+  const auto floor_of_tilt = [&](double spread_m2) {
+    constexpr double kLeastHalfExtent2 = 1e-4;  // a single cell has no extent of its own: a centimetre
+    return floor2 / std::max(3.0 * spread_m2, kLeastHalfExtent2);  // a uniform strip of half length h varies by h^2 / 3
   };
-  return Eigen::Vector3d(tilt_variance(fit.spread_1_m2), tilt_variance(fit.spread_2_m2), 1.0 / fit.weight + floor2)
+  return Eigen::Vector3d(fit.tilt_1_rad2 + floor_of_tilt(fit.spread_1_m2),
+                         fit.tilt_2_rad2 + floor_of_tilt(fit.spread_2_m2), 1.0 / fit.weight + floor2)
       .asDiagonal();
 }
 

@@ -91,12 +91,14 @@ Eigen::Matrix3d PoseEvidence::covariance(const PlaneFit& fit, const Eigen::Vecto
       0.0, 0.0, 0.0, 1.0;
   const Eigen::Matrix3d equations = to_fit * normal_equations_ * to_fit.transpose();
   const double weight = equations(2, 2);
-  // In the units of the fit's own spreads: what is left of its evidence must span the plane as the fit does.
-  const Eigen::Vector3d scale(1.0 / std::sqrt(fit.spread_1_m2), 1.0 / std::sqrt(fit.spread_2_m2), 1.0);
+  const bool spans = weight > 0.0 && fit.spread_1_m2 > 0.0 && fit.spread_2_m2 > 0.0;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  constexpr double kLeastShare = 1e-3;
-  if (weight > 0.0) solver.computeDirect(scale.asDiagonal() * equations * scale.asDiagonal() / weight);
-  if (!(weight > 0.0) || !(solver.eigenvalues()(0) > kLeastShare)) {
+  constexpr double kLeastShare = 1e-3;  // of the fit's own spreads: the evidence must span the plane as the fit does
+  if (spans) {
+    const Eigen::Vector3d scale(1.0 / std::sqrt(fit.spread_1_m2), 1.0 / std::sqrt(fit.spread_2_m2), 1.0);
+    solver.computeDirect(scale.asDiagonal() * equations * scale.asDiagonal() / weight);
+  }
+  if (!spans || !(solver.eigenvalues()(0) > kLeastShare)) {
     const double rotation = config.sigma_rad * config.sigma_rad;
     return Eigen::Vector3d(rotation, rotation, config.sigma_m * config.sigma_m).asDiagonal();
   }

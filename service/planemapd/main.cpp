@@ -71,7 +71,7 @@ void log_start(const ServiceConfig& config, const std::string& url, std::uint64_
   }
   const std::string advice = receive_buffer_advice(url, text_of("/proc/sys/net/core/rmem_max"));
   if (!advice.empty()) spdlog::warn("{}", advice);
-  spdlog::debug("configuration:\n{}", to_yaml(config));
+  spdlog::info("configuration:\n{}", to_yaml(config));
 }
 
 /// Runs until SIGTERM or SIGINT. The signals are blocked in every thread and waited for here, so no handler ever runs.

@@ -211,6 +211,27 @@ TEST_F(CliTest, QuietPrintsNothingAndTheSummaryNamesThePlanes) {
   EXPECT_EQ(summary.err, "") << "no progress where stderr is no terminal";
 }
 
+TEST_F(CliTest, OutputThatIsLostIsAFailure) {
+  write_wall_log(path("log"), 2);
+  for (const char* how : {"--json", ""}) {
+    const Finished outcome = planemap("build '" + path("log") + "' " + how + " > /dev/full");
+    EXPECT_EQ(outcome.exit_code, 1) << how;
+    EXPECT_NE(outcome.err.find("could not be written"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(CliTest, SettingsOfMessagesAreSaidNotToApplyToAFolder) {
+  const char* data = std::getenv("PLANEMAP_TEST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "PLANEMAP_TEST_DATA is not set";
+  const std::string build = std::string("build '") + data + "/redkitchen' --frames 1 --json ";
+  const Finished plain = planemap(build + "--set pose.sigma_m=0.001");
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_EQ(plain.err, "");
+  const Finished told = planemap(build + "--set inputs.0.max_range_m=1.5");
+  EXPECT_EQ(told.exit_code, 0);
+  EXPECT_NE(told.err.find("inputs.* and pose.* are about messages"), std::string::npos) << told.err;
+}
+
 TEST_F(CliTest, TheRedKitchenBuildsTheSameTwice) {
   const char* data = std::getenv("PLANEMAP_TEST_DATA");
   if (data == nullptr) GTEST_SKIP() << "PLANEMAP_TEST_DATA is not set";

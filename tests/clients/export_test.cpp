@@ -178,11 +178,21 @@ TEST_F(ExportFolder, EveryFormatWritesTheSameBytesTwice) {
 }
 
 TEST_F(ExportFolder, AFailedExportLeavesTheOldFileAndNoRemains) {
-  const fs::path path = folder_ / "cells.ply";
+  const fs::path path = folder_ / (std::string(250, 'a') + ".ply");  // a name with no room for what is written first
   std::ofstream(path) << "old";
-  EXPECT_FALSE(export_to(ExportMap{}, path)) << "PCL writes no empty cloud";
+  EXPECT_FALSE(export_to(room(), path));
   EXPECT_EQ(fs::file_size(path), 3u);
   EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(ExportFolder, AMapWithoutCellsIsWrittenInEveryFormat) {
+  for (const char* name : {"empty.ply", "empty.csv", "empty.json", "empty.svg"}) {
+    const auto written = export_to(ExportMap{}, folder_ / name);
+    EXPECT_TRUE(written) << written.error().message;
+  }
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  EXPECT_EQ(pcl::io::loadPLYFile((folder_ / "empty.ply").string(), cloud), 0);
+  EXPECT_TRUE(cloud.empty());
 }
 
 TEST_F(ExportFolder, UnusablePathsAreRefusedWithAReason) {

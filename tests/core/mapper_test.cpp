@@ -75,6 +75,34 @@ TEST(Mapper, ThePapersReadingFindsTheWallsToo) {
   EXPECT_GE(found, 5U);
 }
 
+TEST(Mapper, EveryRecordIsSoundAlsoThatOfASingleCell) {
+  for (const Preset which : {Preset::kBest, Preset::kPaper}) {
+    for (const double sigma_m : {0.0, 0.002}) {
+      MapperConfig config = preset(which);
+      config.pose_error.sigma_m = sigma_m;
+      config.pose_error.sigma_rad = 0.5 * sigma_m;
+      config.planes.min_cells = 1;
+      Mapper mapper(config, 1);
+      const Room room;
+      for (int i = 0; i < 10; ++i) {
+        const Isometry3d T = testing::looking({0.0, 0.0, 0.1}, {std::cos(0.6 * i), std::sin(0.6 * i), 0.2});
+        mapper.integrate(testing::render(room.walls, T, static_cast<std::uint64_t>(i)), T);
+      }
+      const auto map = mapper.snapshot();
+      std::size_t single = 0;
+      for (const auto& record : map->planes()) {
+        EXPECT_TRUE(record->covariance.allFinite()) << record->id << " of " << record->cell_count << " cells";
+        EXPECT_GT(record->covariance.diagonal().minCoeff(), 0.0);
+        EXPECT_NEAR(record->plane.normal().norm(), 1.0, 1e-9);
+        single += record->cell_count == 1;
+      }
+      if (which == Preset::kPaper) {
+        EXPECT_GT(single, 0U) << "no plane of a single cell: nothing was shown";
+      }
+    }
+  }
+}
+
 TEST(Mapper, EveryCellOfAPlaneIsCountedInItsRecord) {
   Mapper mapper = mapped(Room(), 25);
   const auto map = mapper.snapshot();

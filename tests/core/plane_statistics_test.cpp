@@ -134,7 +134,7 @@ TEST(Covariance, HasRankThreeAndItsFloor) {
   fit.plane = Plane::through(fit.centroid_m, Vector3d::UnitZ());
   fit.spread_1_m2 = 1.0 / 3.0;  // half extents of 1 m and 2 m
   fit.spread_2_m2 = 4.0 / 3.0;
-  fit.weight = 1e18;
+  fit.weight = 1e18;  // and with it exact tilts
   const Eigen::Matrix4d c = covariance_of(fit, sensor_covariance(fit, /*offset_floor_m=*/1e-3));
   EXPECT_NEAR(std::sqrt(c(0, 0)), 1e-3, 1e-6);                   // 1 mm over 1 m
   EXPECT_NEAR(std::sqrt(c(1, 1)), 0.5e-3, 1e-6);                 // 1 mm over 2 m

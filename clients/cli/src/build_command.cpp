@@ -51,6 +51,15 @@ std::optional<Eigen::Vector3d> gravity_of(const service::ServiceConfig& config) 
   return Eigen::Vector3d(gravity[0], gravity[1], gravity[2]);
 }
 
+/// Whether the settings of scans and poses that come as messages are other than the defaults.
+bool has_message_settings(const service::ServiceConfig& config) {
+  service::ServiceConfig plain = config;
+  plain.inputs = service::ServiceConfig{}.inputs;
+  plain.pose = service::PoseConfig{};
+  plain.pose.error = config.pose.error;  // the mapper's
+  return service::to_yaml(plain) != service::to_yaml(config);
+}
+
 ExitCode run(const BuildOptions& options) {
   const auto input = input_of(options);
   if (!input) return complain(ExitCode::kWrongUse, input.error().message);
@@ -59,6 +68,13 @@ ExitCode run(const BuildOptions& options) {
   }
   auto config = service::load_config(options.config);
   if (!config) return complain(ExitCode::kWrongUse, config.error().message);
+
+  if (std::filesystem::is_directory(options.path) && has_message_settings(*config)) {
+    std::fprintf(
+        stderr,
+        "planemap: inputs.* and pose.* are about messages and don't apply to a folder, whose frames bring the camera's "
+        "own pose; the ranges that apply are sensor.min_range_m and sensor.max_range_m\n");
+  }
 
   const auto result = build_map(*input, std::move(*config), !options.quiet);
   if (!result) return complain(ExitCode::kFailed, result.error().message);
@@ -101,8 +117,8 @@ void add_build_command(CLI::App& app, Action& action) {
   command->add_option("--intrinsics", options->intrinsics, "Camera of a folder's images, pixels")
       ->type_name("FX,FY,CX,CY");
   command->add_option("--depth-scale", options->depth_scale_m, "Metres per unit of a folder's depth images")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--frames", options->frames, "Map at most so many scans")->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-9, 1e3));
+  command->add_option("--frames", options->frames, "Map at most so many scans")->check(CLI::Range(1, 1000000000));
   command->add_flag("--json", options->json, "Print the summary as one JSON object");
   command->add_flag("--quiet", options->quiet, "No progress, no summary for people");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

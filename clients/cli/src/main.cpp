@@ -41,7 +41,12 @@ ExitCode run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? ExitCode::kDone : ExitCode::kWrongUse;
   }
-  return action();
+  const ExitCode code = action();
+  // What was printed may still wait in the buffer: a full disk is seen only now.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return complain(ExitCode::kFailed, "the output could not be written: is the disk full?");
+  }
+  return code;
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ struct PlaneFit {
   double residual_m2 = 0.0;                              ///< and along the normal
   double deviation_rad = 0.0;                            ///< of the normal
   double weight = 0.0;                                   ///< of the evidence: the sum of 1 / sigma^2, 1/m2
+  double tilt_1_rad2 = 0.0;  ///< variance of the tilt along tangent_1, by the errors of the evidence
+  double tilt_2_rad2 = 0.0;  ///< and along tangent_2
 
   /// Width and length of the uniform rectangle with these spreads, metres.
   double width_m() const;

@@ -2,6 +2,7 @@
 #include <pcl/point_types.h>
 
 #include <exception>
+#include <fstream>
 
 #include "export/colour.hpp"
 #include "export/formats.hpp"
@@ -24,9 +25,19 @@ pcl::PointXYZRGBNormal point_of(const CellView& cell) {
   return point;
 }
 
+/// PCL writes no cloud without points, yet a map without cells is a map.
+Expected<void> write_empty_ply(const std::filesystem::path& path) {
+  std::ofstream file(path);
+  file << "ply\nformat ascii 1.0\ncomment a map without cells\nelement vertex 0\nproperty float x\nproperty float y\n"
+          "property float z\nend_header\n";
+  if (!file.flush()) return fail(path.string() + ": cannot be written");
+  return {};
+}
+
 }  // namespace
 
 Expected<void> write_cells_ply(const ExportMap& map, const std::filesystem::path& path) {
+  if (map.cells.empty()) return write_empty_ply(path);
   pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
   cloud.reserve(map.cells.size());
   for (const CellView& cell : map.cells) cloud.push_back(point_of(cell));

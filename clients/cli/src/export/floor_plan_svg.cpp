@@ -132,7 +132,8 @@ class Drawing {
           kMargin);
     double level_m2 = 0.0;
     for (const PlanArea& area : plan_.areas) level_m2 += area.floor ? area.area_m2 : 0.0;
-    const std::string floor = level_m2 > 0.0 ? fmt::format(", {:.1f} m² of floor", level_m2) : std::string();
+    std::string floor = level_m2 > 0.0 ? fmt::format(", {:.1f} m² of floor", level_m2) : std::string();
+    if (!map_.gravity) floor = ", gravity not known: −z is taken for down";
     print(R"(<text class="sub" x="{}" y="56">{} planes, {} cells{} · frame {}, revision {} of map {}</text>)"
           "\n",
           kMargin, map_.planes.size(), map_.cells.size(), floor, escaped(map_.frame), map_.revision, map_.epoch);
