@@ -62,7 +62,7 @@ PoseInsert PoseBuffer::insert(const StampedPose& pose) {
 }
 
 /// A late pose belongs to the side of a jump from which it is no jump itself.
-std::uint64_t PoseBuffer::jumps_at(std::deque<Kept>::const_iterator place, const StampedPose& pose) const {
+std::uint64_t PoseBuffer::jumps_at(const std::deque<Kept>::const_iterator& place, const StampedPose& pose) const {
   const Kept& after = *place;
   if (place == poses_.begin()) return after.jumps;
   const Kept& before = *std::prev(place);

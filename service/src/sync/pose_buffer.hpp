@@ -63,7 +63,7 @@ class PoseBuffer {
   };
 
   static PoseLookup found(const Kept& pose);
-  std::uint64_t jumps_at(std::deque<Kept>::const_iterator place, const StampedPose& pose) const;
+  std::uint64_t jumps_at(const std::deque<Kept>::const_iterator& place, const StampedPose& pose) const;
   bool is_jump(const StampedPose& a, const StampedPose& b) const;
   void forget_old();
 
