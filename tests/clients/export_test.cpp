@@ -190,9 +190,9 @@ TEST_F(ExportFolder, AMapWithoutCellsIsWrittenInEveryFormat) {
     const auto written = export_to(ExportMap{}, folder_ / name);
     EXPECT_TRUE(written) << written.error().message;
   }
-  pcl::PointCloud<pcl::PointXYZ> cloud;
+  pcl::PCLPointCloud2 cloud;  // as bytes: PCL's conversion to points takes the address of the first one
   EXPECT_EQ(pcl::io::loadPLYFile((folder_ / "empty.ply").string(), cloud), 0);
-  EXPECT_TRUE(cloud.empty());
+  EXPECT_EQ(cloud.width * cloud.height, 0u);
 }
 
 TEST_F(ExportFolder, UnusablePathsAreRefusedWithAReason) {
