@@ -7,17 +7,6 @@
 
 namespace planemap {
 
-namespace {
-
-/// Weight of a cell's points: 1 / sigma^2 of its mean point. Points without error are taken as good to a tenth of a
-/// millimetre.
-double point_weight(const CellSums& sums) {
-  constexpr double kLeastVariance = 1e-8;
-  return 1.0 / std::max(sums.error_m2.sum() / sums.count(), kLeastVariance);
-}
-
-}  // namespace
-
 double min_max_deviation_rad(std::span<const UncertainCentre> centres, const Eigen::Vector3d& normal,
                              const Eigen::Vector3d& tangent_1, const Eigen::Vector3d& tangent_2) {
   double moved_1 = 0.0;
@@ -40,7 +29,7 @@ double min_max_deviation_rad(std::span<const UncertainCentre> centres, const Eig
 void NormalEstimator::gather(const UncertainGrid& grid, CellRef ref) {
   neighbourhood_.clear();
   grid.for_each_neighbour(ref, config_.neighbourhood_depth, [&](CellRef other) {
-    if (grid.cell(other).sums.count() > 0.0) neighbourhood_.push_back(other);
+    if (grid.cell(other).sums.count > 0.0) neighbourhood_.push_back(other);
   });
 }
 
@@ -48,16 +37,15 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const Uncertai
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   const bool pooled = config_.fit == NormalFit::kPooled;
   Moments sum;
-  Eigen::Vector3d weighted_error = Eigen::Vector3d::Zero();
+  double count = 0.0;
   for (const CellRef other : neighbourhood_) {
-    const CellSums& sums = grid.cell(other).sums;
+    const Cell& cell = grid.cell(other);
     const Eigen::Vector3d shift = grid.geometric_centre_m(other) - origin;
     if (pooled) {
-      const double w = point_weight(sums);
-      sum.add(sums.points, w, shift);
-      weighted_error += w * sums.error_m2;
+      sum.add(cell.evidence.unpacked(), 1.0, shift);
+      count += cell.sums.count;
     } else {
-      const Eigen::Vector3d centre = sums.points.mean() + shift;
+      const Eigen::Vector3d centre = cell.sums.mean_m() + shift;
       sum.add(Moments{1.0, centre, Symmetric3::outer(centre)});
     }
   }
@@ -72,7 +60,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const Uncertai
           std::max(solver.eigenvalues()(0), 0.0),
           0.0};
   if (fit.normal.dot(grid.cell(ref).sums.view.cast<double>()) < 0.0) fit.normal = -fit.normal;
-  fit.expected_variance_m2 = fit.normal.cwiseAbs2().dot(weighted_error) / sum.weight;
+  fit.expected_variance_m2 = count / sum.weight;  // the weights are 1 / sigma^2
   return fit;
 }
 
@@ -105,11 +93,12 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const Uncer
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   gather(grid, ref);
   const auto elsewhere = [&](CellRef other) {
-    const CellSums& sums = grid.cell(other).sums;
+    const Cell& cell = grid.cell(other);
     const Eigen::Vector3d shift = grid.geometric_centre_m(other) - origin;
     const double d_m = own->normal.dot(shift - own->centroid_m);
-    return sums.points.mean_square_distance(own->normal, d_m) > allowed_variance_m2(sums.point_variance(own->normal)) ||
-           own->normal.dot(sums.view.cast<double>()) < 0.0;
+    return cell.evidence.unpacked().mean_square_distance(own->normal, d_m) >
+               allowed_variance_m2(cell.evidence_variance_m2()) ||
+           own->normal.dot(cell.sums.view.cast<double>()) < 0.0;
   };
   neighbourhood_.erase(std::remove_if(neighbourhood_.begin(), neighbourhood_.end(), elsewhere), neighbourhood_.end());
   std::optional<Fit> together = fit_gathered(grid, ref);
@@ -122,17 +111,17 @@ double NormalEstimator::deviation_rad(const UncertainGrid& grid, CellRef ref, co
   if (neighbourhood_.size() < 4) {
     // Too few centres to perturb: what the points' own errors make of the tilt.
     double points = 0.0;
-    for (const CellRef other : neighbourhood_) points += grid.cell(other).sums.count();
+    for (const CellRef other : neighbourhood_) points += grid.cell(other).sums.count;
     return std::atan(std::sqrt(fit.expected_variance_m2 / (points * fit.spread_1_m2)));
   }
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   centres_.clear();
   for (const CellRef other : neighbourhood_) {
     const CellSums& sums = grid.cell(other).sums;
-    const double n = sums.count();
+    const double n = sums.count;
     const double share = config_.centre_error == CentreError::kMean ? 1.0 / (n * n) : 1.0 / n;
-    centres_.push_back(
-        {sums.points.mean() + grid.geometric_centre_m(other) - origin - fit.centroid_m, sums.error_m2 * share});
+    centres_.push_back({sums.mean_m() + grid.geometric_centre_m(other) - origin - fit.centroid_m,
+                        sums.error_m2.cast<double>() * share});
   }
   return min_max_deviation_rad(centres_, fit.normal, fit.tangent_1, fit.tangent_2);
 }
@@ -149,7 +138,7 @@ std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, C
 
 void NormalEstimator::refresh(UncertainGrid& grid, CellRef ref) {
   const Cell& cell = grid.cell(ref);
-  const double count = cell.sums.count();
+  const double count = cell.sums.count;
   if (cell.normal_count > 0.0F && count < cell.normal_count * (1.0 + config_.refresh_growth)) return;
   const std::optional<UncertainNormal> fitted = fit(grid, ref);
   Cell& changed = grid.writable(ref);

@@ -17,7 +17,7 @@ LocalPlaneExtractor::LocalPlaneExtractor(const GridConfig& grid, const NormalCon
       squared_chord_(squared_chord(planes.normal_angle_deg * kRadPerDeg)) {}
 
 bool LocalPlaneExtractor::eligible(const Cell& cell) const {
-  return cell.sums.count() > grid_config_.density_threshold && cell.has_normal() &&
+  return cell.sums.count > grid_config_.density_threshold && cell.has_normal() &&
          static_cast<double>(cell.deviation_rad) <= normal_config_.max_deviation_deg * kRadPerDeg;
 }
 
@@ -68,7 +68,7 @@ std::optional<LocalPlane> LocalPlaneExtractor::grow(const UncertainGrid& grid, s
   ++visitor_;
   const auto take = [&](CellRef ref) {
     Cell member = grid.cell(ref);
-    member.plane_weight = static_cast<float>(point_weight(member.sums, member.normal.cast<double>()));
+    member.plane_weight = 1.0F;
     plane.statistics.add(member, grid.geometric_centre_m(ref));
     plane.cells.push_back(ref);
   };

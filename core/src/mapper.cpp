@@ -92,14 +92,15 @@ class Mapper::Impl {
     report.touched_cells = assigner_.changes().size();
     for (const CellChange& change : assigner_.changes()) {
       planes_.detach(grid_, change.cell);
-      grid_.writable(change.cell).sums.add(change.added);
+      Cell& cell = grid_.writable(change.cell);
+      cell.add(change.added, cell.plane != kNoSlot ? planes_.normal(cell.plane) : cell.direction(change.added));
     }
   }
 
   void fit_normals(StageObserver* observer) {
     const StageScope scope(observer, Stage::kNormals);
     for (const CellChange& change : assigner_.changes()) {
-      if (grid_.cell(change.cell).sums.count() > config_.grid.density_threshold) normals_.refresh(grid_, change.cell);
+      if (grid_.cell(change.cell).sums.count > config_.grid.density_threshold) normals_.refresh(grid_, change.cell);
     }
     for (const CellChange& change : assigner_.changes()) planes_.attach(grid_, change.cell);
   }

@@ -35,10 +35,10 @@ std::uint32_t NearCells::number_of(const UncertainGrid& grid, CellRef ref, const
   for (int w = 0; w < 3; ++w) accumulator.centre_cells[w] = static_cast<float>(cell(w)) + 0.5F;
   near.ref = ref;
   const CellSums& sums = grid.cell(ref).sums;
-  near.has_points = sums.count() > 0.0;
+  near.has_points = sums.count > 0.0;
   if (!near.has_points) return number;
   const double per_m = 1.0 / grid.cell_size_m();
-  const CentreStatistics statistics{sums.count(), sums.points.first, sums.error_m2};
+  const CentreStatistics statistics{sums.count, sums.first_m, sums.error_m2.cast<double>()};
   near.centre_cells = expected_centre(statistics) * per_m;
   if (config_.clamp_centres) near.centre_cells = near.centre_cells.cwiseMax(-0.5).cwiseMin(0.5);
   near.variance_cells2 = centre_variance(statistics) * per_m * per_m;

@@ -58,18 +58,17 @@ double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
 float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
   const Cell& cell = grid.cell(ref);
   const Eigen::Vector3d& normal = fit.plane.normal();
-  const double weight = point_weight(cell.sums, normal);
-  if (!(config_.core_sigmas > 0.0)) return static_cast<float>(weight);
+  if (!(config_.core_sigmas > 0.0)) return 1.0F;
   // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
   // scatter about the plane by more than their errors, and its normal turns away.
   const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
   const double expected_m2 =
-      cell.sums.point_variance(normal) + config_.core_floor_m * config_.core_floor_m + pose_variance_m2_;
-  const double ratio = cell.sums.points.mean_square_distance(normal, d_m) / expected_m2;
+      cell.evidence_variance_m2() + config_.core_floor_m * config_.core_floor_m + pose_variance_m2_;
+  const double ratio = cell.evidence.unpacked().mean_square_distance(normal, d_m) / expected_m2;
   if (ratio > config_.core_sigmas * config_.core_sigmas) return 0.0F;
   if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < core_cosine_) return 0.0F;
   const double excess = std::max(1.0, ratio);
-  return static_cast<float>(weight / (excess * excess));
+  return static_cast<float>(1.0 / (excess * excess));
 }
 
 void PlaneMap::forget_left_cells(const UncertainGrid& grid, PlaneSlot slot) {
@@ -91,8 +90,7 @@ void PlaneMap::reweigh(UncertainGrid& grid, PlaneSlot slot) {
   PlaneStatistics fresh(grid.geometric_centre_m(plane.cells.front()));
   for (const CellRef ref : plane.cells) {
     Cell& cell = grid.writable(ref);
-    cell.plane_weight = any_core ? member_weight(grid, ref, plane.fit)
-                                 : static_cast<float>(point_weight(cell.sums, plane.fit.plane.normal()));
+    cell.plane_weight = any_core ? member_weight(grid, ref, plane.fit) : 1.0F;
     fresh.add(cell, grid.geometric_centre_m(ref));
   }
   plane.statistics = fresh;
@@ -287,7 +285,8 @@ void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> 
     if (cell.plane == kNoSlot || !(cell.plane_weight > 0.0F)) continue;
     State& plane = state(cell.plane);
     if (plane.seen.weight <= 0.0) seen.push_back(cell.plane);
-    plane.seen.add(change.added.points, static_cast<double>(cell.plane_weight),
+    const double share = static_cast<double>(cell.plane_weight);
+    plane.seen.add(change.added.points, share * change.added.point_weight(plane.fit.plane.normal()),
                    grid.geometric_centre_m(change.cell) - plane.statistics.origin_m());
   }
   for (const PlaneSlot slot : seen) {
@@ -333,7 +332,7 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const
 void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes) {
   for (const CellChange& change : changes) {
     const Cell& cell = grid.cell(change.cell);
-    if (cell.sums.count() <= grid_config_.density_threshold) continue;
+    if (cell.sums.count <= grid_config_.density_threshold) continue;
     if (cell.plane != kNoSlot && !(config_.slab_sigmas > 0.0)) continue;
     const PlaneSlot slot = best_neighbour(grid, change.cell);
     if (slot == kNoSlot) continue;

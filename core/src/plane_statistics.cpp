@@ -16,9 +16,9 @@ double PlaneFit::extent_m() const {
 
 void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign) {
   const Eigen::Vector3d shift_m = centre_m - origin_m_;
-  const double n = cell.sums.count();
-  pooled_.add(cell.sums.points, sign * static_cast<double>(cell.plane_weight), shift_m);
-  const Eigen::Vector3d virtual_centre = cell.sums.points.mean();
+  const double n = cell.sums.count;
+  pooled_.add(cell.evidence.unpacked(), sign * static_cast<double>(cell.plane_weight), shift_m);
+  const Eigen::Vector3d virtual_centre = cell.sums.mean_m();
   centres_.add(Moments{1.0, virtual_centre, Symmetric3::outer(virtual_centre)}, sign, shift_m);
   if (cell.has_normal()) {
     const auto deviation = static_cast<double>(cell.deviation_rad);
@@ -108,11 +108,6 @@ std::optional<PlaneFit> PlaneStatistics::fit_normals() const {
 double squared_chord(double angle_rad) {
   const double chord = 2.0 * std::sin(0.5 * angle_rad);
   return chord * chord;
-}
-
-double point_weight(const CellSums& sums, const Eigen::Vector3d& normal) {
-  constexpr double kLeastVariance = 1e-8;  // points without error are taken as good to a tenth of a millimetre
-  return 1.0 / std::max(sums.point_variance(normal), kLeastVariance);
 }
 
 Eigen::Matrix3d sensor_covariance(const PlaneFit& fit, double offset_floor_m) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "commit.hpp"
 #include "planemap/expected_distance.hpp"
 #include "rooms.hpp"
 #include "scan_points.hpp"
@@ -32,9 +33,9 @@ class NaiveGrid {
   /// What the scan adds to each cell. `ties` gets the points that may be counted elsewhere, for each cell that may gain
   /// or lose one.
   template <class ScanType>
-  std::map<Key, CellSums> assign(const UncertainGrid& grid, const ScanType& scan, const Isometry3d& T_world_sensor,
+  std::map<Key, ScanSums> assign(const UncertainGrid& grid, const ScanType& scan, const Isometry3d& T_world_sensor,
                                  std::map<Key, int>& ties) const {
-    std::map<Key, CellSums> added;
+    std::map<Key, ScanSums> added;
     testing::for_each_point(scan, T_world_sensor, SensorConfig{}, [&](const testing::UncertainPoint& point) {
       const Vector3d variance = rotate_variances(T_world_sensor.linear(), point.variance_sensor_m2);
       const CellIndex own = (point.p_world_m.array() / size_m_).floor().cast<int>();
@@ -45,7 +46,7 @@ class NaiveGrid {
       if (rivals.size() > 1) {
         for (const Key& rival : rivals) ++ties[rival];
       }
-      CellSums& cell = added[key_of(winner)];
+      ScanSums& cell = added[key_of(winner)];
       const Vector3d q = point.p_world_m - centre_m(winner);
       cell.points.add(Moments{1.0, q, Symmetric3::outer(q)});
       cell.error_m2 += variance;
@@ -78,10 +79,10 @@ class NaiveGrid {
         for (int x = -1; x <= 1; ++x) {
           const CellIndex index = own + CellIndex(x, y, z);
           const auto found = grid.find(index);
-          if (!found || grid.cell(*found).sums.count() <= 0.0) continue;
+          if (!found || grid.cell(*found).sums.count <= 0.0) continue;
           own_has_points = own_has_points || index == own;
           const CellSums& sums = grid.cell(*found).sums;
-          CentreStatistics u{sums.count(), sums.points.first, sums.error_m2};
+          CentreStatistics u{sums.count, sums.first_m, sums.error_m2.cast<double>()};
           if (clamp_) {
             const double half = 0.5 * size_m_ * u.count;
             u.linear = u.linear.cwiseMax(-half).cwiseMin(half);
@@ -106,12 +107,12 @@ class NaiveGrid {
 
 /// Puts the changes of a scan into the grid, as the mapper does.
 void commit(UncertainGrid& grid, Assigner& assigner) {
-  for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);
+  testing::commit(grid, assigner.changes());
   assigner.finish(grid);
 }
 
 /// The changes must be the twin's, but for ties, to what floats leave of the sums.
-void expect_same(const UncertainGrid& grid, const std::vector<CellChange>& changes, std::map<Key, CellSums> expected,
+void expect_same(const UncertainGrid& grid, const std::vector<CellChange>& changes, std::map<Key, ScanSums> expected,
                  const std::map<Key, int>& ties) {
   const auto ties_of = [&](const Key& key) {
     const auto found = ties.find(key);
@@ -119,7 +120,7 @@ void expect_same(const UncertainGrid& grid, const std::vector<CellChange>& chang
   };
   for (const CellChange& change : changes) {
     const Key key = key_of(grid.index_of(change.cell));
-    const CellSums twin = expected[key];
+    const ScanSums twin = expected[key];
     expected.erase(key);
     const double count = change.added.count();
     ASSERT_LE(std::abs(count - twin.count()), ties_of(key)) << key[0] << " " << key[1] << " " << key[2];
@@ -287,12 +288,11 @@ TEST(Assigner, StatisticsOfDefinition1ByHand) {
                   Isometry3d::Identity());
   commit(grid, assigner);
   const CellSums& sums = grid.cell(*grid.find({0, 0, 1})).sums;
-  EXPECT_DOUBLE_EQ(sums.count(), 2.0);                                         // d(u)
-  EXPECT_TRUE(sums.points.first.isApprox(Vector3d(0.25, -0.25, 0.0), 1e-12));  // L, about (0.5, 0.5, 1.5)
-  EXPECT_NEAR(sums.points.second.e[0], 0.0625, 1e-12);                         // S
-  EXPECT_NEAR(sums.points.second.e[1], -0.0625, 1e-12);                        // and its cross term
-  EXPECT_TRUE(sums.error_m2.isApprox(Vector3d(0.02, 0.08, 0.18), 1e-6));       // S_s
-  EXPECT_LT(sums.view.z(), 0.0F);                                              // the sensor is at the origin
+  EXPECT_DOUBLE_EQ(sums.count, 2.0);                                                     // d(u)
+  EXPECT_TRUE(sums.first_m.isApprox(Vector3d(0.25, -0.25, 0.0), 1e-12));                 // L, about (0.5, 0.5, 1.5)
+  EXPECT_NEAR(sums.square_m2.x(), 0.0625, 1e-7);                                         // S
+  EXPECT_TRUE(sums.error_m2.cast<double>().isApprox(Vector3d(0.02, 0.08, 0.18), 1e-6));  // S_s
+  EXPECT_LT(sums.view.z(), 0.0F);                                                        // the sensor is at the origin
 }
 
 TEST(Assigner, EveryPointIsAccountedFor) {
@@ -345,8 +345,8 @@ TEST(Assigner, TheFarSideOfAThinWallAttractsNoPoints) {
   commit(grid, assigner);
   assigner.assign(grid, at(from_left, 0.9), from_left);
   commit(grid, assigner);
-  EXPECT_DOUBLE_EQ(grid.cell(*grid.find({0, 0, 0})).sums.count(), 2.0);
-  EXPECT_DOUBLE_EQ(grid.cell(*grid.find({1, 0, 0})).sums.count(), 1.0);
+  EXPECT_DOUBLE_EQ(grid.cell(*grid.find({0, 0, 0})).sums.count, 2.0);
+  EXPECT_DOUBLE_EQ(grid.cell(*grid.find({1, 0, 0})).sums.count, 1.0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "commit.hpp"
 #include "planemap/assignment.hpp"
 #include "rooms.hpp"
 
@@ -88,7 +89,7 @@ UncertainGrid mapped(const std::vector<testing::Wall>& walls, const Eigen::Isome
   Assigner assigner(CoreConfig{}, SensorConfig{}, GridConfig{});
   for (int i = 0; i < scans; ++i) {
     assigner.assign(grid, testing::render(walls, T, static_cast<std::uint64_t>(i)), T);
-    for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);
+    testing::commit(grid, assigner.changes());
     assigner.finish(grid);
   }
   return grid;
@@ -101,7 +102,7 @@ TEST(NormalEstimator, FindsTheNormalOfAWallTowardsTheSensor) {
   NormalEstimator estimator(NormalConfig{});
   std::vector<double> errors_deg;
   grid.for_each_cell([&](CellRef ref) {
-    if (grid.cell(ref).sums.count() < 100.0) return;
+    if (grid.cell(ref).sums.count < 100.0) return;
     const auto normal = estimator.fit(grid, ref);
     ASSERT_TRUE(normal.has_value());
     EXPECT_GT(normal->normal.dot(kTilted), 0.0);
@@ -149,7 +150,7 @@ TEST(NormalEstimator, KeepsTheTwoFacesOfAThinWallApart) {
     const Eigen::Isometry3d T = testing::looking({2.05 + 1.5 * side, 0.02, 0.03}, {2.05, 0.02, 0.03});
     const std::vector<testing::Wall> face = {{Vector3d(side, 0, 0), -side * (2.05 + 0.05 * side)}};
     assigner.assign(grid, testing::render(face, T, 1), T);
-    for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);
+    testing::commit(grid, assigner.changes());
     assigner.finish(grid);
   }
   NormalEstimator estimator(NormalConfig{});

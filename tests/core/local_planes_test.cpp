@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "commit.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/mapper.hpp"
 #include "rooms.hpp"
@@ -19,7 +20,7 @@ struct OneScan {
       : grid(config.grid.cell_size_m), assigner(config.core, config.sensor, config.grid) {
     assigner.assign(grid, testing::render(walls, T, 1), T);
     NormalEstimator normals(config.normals);
-    for (const CellChange& change : assigner.changes()) grid.writable(change.cell).sums.add(change.added);
+    testing::commit(grid, assigner.changes());
     for (const CellChange& change : assigner.changes()) normals.refresh(grid, change.cell);
     planes = LocalPlaneExtractor(config.grid, config.normals, config.planes).extract(grid, assigner.changes());
     std::sort(planes.begin(), planes.end(),
@@ -71,7 +72,7 @@ TEST(LocalPlaneExtractor, OnlyDenseCellsAreTaken) {
   const OneScan scan(kCorner, testing::looking({0.3, 0.4, 0.0}, {2.0, -0.6, 0.0}), config);
   ASSERT_FALSE(scan.planes.empty());
   for (const LocalPlane& plane : scan.planes) {
-    for (const CellRef ref : plane.cells) EXPECT_GT(scan.grid.cell(ref).sums.count(), 100.0);  // strictly
+    for (const CellRef ref : plane.cells) EXPECT_GT(scan.grid.cell(ref).sums.count, 100.0);  // strictly
   }
 }
 

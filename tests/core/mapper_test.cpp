@@ -61,6 +61,24 @@ TEST(Mapper, ARoomBecomesItsSixPlanes) {
   EXPECT_EQ(large, 6U);
 }
 
+TEST(Mapper, FarLooksBesideNearOnesDoNotShiftAWall) {
+  // Near looks lie in one layer of cells, far ones (25 mm of noise) in three.
+  const Vector3d normal = Vector3d(-1.0, 0.05, 0.02).normalized();
+  for (const double d : {4.01, 4.03, 4.05, 4.07}) {
+    Mapper mapper(preset(Preset::kBest), 1);
+    for (int i = 0; i < 16; ++i) {
+      const double range_m = i % 2 == 0 ? 1.3 : 4.2;
+      const Isometry3d T = testing::looking({d - range_m, 0.01 * i, 0.0}, {d, 0.05 * i, 0.0});
+      mapper.integrate(testing::render({{normal, d}}, T, static_cast<std::uint64_t>(i)), T);
+    }
+    const auto map = mapper.snapshot();
+    const auto largest = std::max_element(map->planes().begin(), map->planes().end(),
+                                          [](const auto& a, const auto& b) { return a->cell_count < b->cell_count; });
+    ASSERT_NE(largest, map->planes().end());
+    EXPECT_NEAR(normal.dot((*largest)->centroid_m) + d, 0.0, 2e-4) << "wall at " << d;
+  }
+}
+
 TEST(Mapper, ThePapersReadingFindsTheWallsToo) {
   const Room room;
   Mapper mapper = mapped(room, 40, Preset::kPaper);

@@ -14,15 +14,17 @@ using Eigen::Vector3d;
 
 /// A cell of points about its centre.
 Cell cell_of(const std::vector<Vector3d>& points_m, const Vector3d& centre_m, double sigma_m) {
-  Cell cell;
+  ScanSums scan;
   for (const Vector3d& p : points_m) {
-    cell.sums.points.add(Moments{1.0, p - centre_m, Symmetric3::outer(p - centre_m)});
-    cell.sums.error_m2 += Vector3d::Constant(sigma_m * sigma_m);
-    cell.sums.view += Eigen::Vector3f(0.0F, 0.0F, 1.0F);
+    scan.points.add(Moments{1.0, p - centre_m, Symmetric3::outer(p - centre_m)});
+    scan.error_m2 += Vector3d::Constant(sigma_m * sigma_m);
+    scan.view += Eigen::Vector3f(0.0F, 0.0F, 1.0F);
   }
+  Cell cell;
+  cell.add(scan, Vector3d::UnitZ());
   cell.normal = Eigen::Vector3f::UnitZ();
   cell.deviation_rad = 0.02F;
-  cell.plane_weight = static_cast<float>(1.0 / (sigma_m * sigma_m));
+  cell.plane_weight = 1.0F;
   return cell;
 }
 
@@ -39,6 +41,23 @@ TEST(PlaneStatistics, PooledFitOfFourPointsByHand) {
   EXPECT_NEAR(fit->spread_2_m2, 4.0, 1e-6);
   EXPECT_NEAR(fit->residual_m2, 0.0, 1e-9);
   EXPECT_NEAR(fit->extent_m(), std::sqrt(48.0), 1e-6);
+}
+
+TEST(Cell, EvidenceCountsByTheErrorsOfItsScan) {
+  // A point at 0 mm with sigma 1 mm along z, one at 10 mm with 3 mm: weights 9 to 1, so the mean is 1 mm; the harmonic
+  // mean of the variances is 2 / (1 + 1/9) mm2. Errors across the normal don't count.
+  Cell cell;
+  ScanSums near;
+  near.points = {1.0, Vector3d::Zero(), {}};
+  near.error_m2 = {4e-6, 9e-6, 1e-6};
+  ScanSums far;
+  far.points = {1.0, Vector3d(0, 0, 0.01), Symmetric3::outer(Vector3d(0, 0, 0.01))};
+  far.error_m2 = {1e-6, 1e-6, 9e-6};
+  cell.add(near, Vector3d::UnitZ());
+  cell.add(far, Vector3d::UnitZ());
+  EXPECT_NEAR(cell.evidence.unpacked().mean().z(), 0.001, 1e-9);
+  EXPECT_NEAR(cell.evidence_variance_m2(), 1.8e-6, 1e-12);
+  EXPECT_NEAR(cell.sums.mean_m().z(), 0.005, 1e-12);  // the virtual centre counts every point as one
 }
 
 TEST(PlaneStatistics, WithoutPoolingThePlaneIsTheMeanOfTheNormalsThroughTheMeanCentre) {

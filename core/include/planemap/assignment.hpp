@@ -14,7 +14,7 @@ namespace planemap {
 /// What one scan adds to one cell; it has not been added yet.
 struct CellChange {
   CellRef cell;
-  CellSums added;  ///< about the cell's geometric centre
+  ScanSums added;
 };
 
 /// Assigns the points of a scan to cells by expected squared distance (Eq. 7; Fig. 3, line 2).

@@ -51,6 +51,26 @@ struct Moments {
   }
 };
 
+/// Moments in floats, for cells: their points are no farther than a few centimetres from the reference point, so a
+/// float's digits are a thousandth of any sensor's error.
+struct PackedMoments {
+  float weight = 0.0F;
+  Eigen::Vector3f first = Eigen::Vector3f::Zero();
+  std::array<float, 6> second{};
+
+  /// Adds moments about the same reference point, each point with the given weight.
+  void add(const Moments& other, double scale) {
+    weight += static_cast<float>(scale * other.weight);
+    first += (scale * other.first).cast<float>();
+    for (std::size_t i = 0; i < 6; ++i) second[i] += static_cast<float>(scale * other.second.e[i]);
+  }
+  Moments unpacked() const {
+    Moments m{static_cast<double>(weight), first.cast<double>(), {}};
+    for (std::size_t i = 0; i < 6; ++i) m.second.e[i] = static_cast<double>(second[i]);
+    return m;
+  }
+};
+
 inline void Moments::add(const Moments& other, double scale, const Eigen::Vector3d& shift_m) {
   const double w = scale * other.weight;
   const Eigen::Vector3d f = scale * other.first;

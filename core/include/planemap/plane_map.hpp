@@ -68,6 +68,8 @@ class PlaneMap {
                       std::vector<RemovedPlane>& removed);
   /// Whether a plane changed since the last update_records().
   bool changed() const { return !dirty_.empty() || !removed_.empty(); }
+  /// The normal of the plane that a cell is labelled with.
+  const Eigen::Vector3d& normal(PlaneSlot slot) const { return state(slot).fit.plane.normal(); }
   /// The id of the plane that a cell is labelled with.
   static PlaneId id_of(PlaneSlot slot) { return slot; }
 

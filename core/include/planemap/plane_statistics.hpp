@@ -33,8 +33,7 @@ class PlaneStatistics {
  public:
   explicit PlaneStatistics(const Eigen::Vector3d& origin_m) : origin_m_(origin_m) {}
 
-  /// Takes a cell in, with cell.plane_weight as the weight of each of its points, or out: then exactly as it was taken
-  /// in.
+  /// Takes a cell in, with cell.plane_weight as the share of its evidence, or out: then exactly as it was taken in.
   /// @param centre_m  the cell's geometric centre
   void add(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, 1.0); }
   void remove(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, -1.0); }
@@ -82,9 +81,6 @@ inline double expected_squared_distance(const Eigen::Vector3d& a, double deviati
 
 /// The squared distance of two unit normals with an angle between them: (2 sin(angle / 2))^2.
 double squared_chord(double angle_rad);
-
-/// Weight of each point of a cell in the plane's moments: 1 / sigma^2 along the normal.
-double point_weight(const CellSums& sums, const Eigen::Vector3d& normal);
 
 /// Covariance of (tilt_1, tilt_2, offset at the centroid) of a fit whose weights are 1 / sigma^2, about its tangents;
 /// what the sensor's errors make of it. Radians and metres.

@@ -45,7 +45,7 @@ class UncertainGrid {
   Cell& writable(CellRef ref) { return writable_block(ref.block).cell(ref.ordinal); }
 
   /// The cell's virtual centre, Eq. 1: E[C_u] = L / n, world frame. @pre the cell has points
-  Eigen::Vector3d virtual_centre_m(CellRef ref) const { return geometric_centre_m(ref) + cell(ref).sums.points.mean(); }
+  Eigen::Vector3d virtual_centre_m(CellRef ref) const { return geometric_centre_m(ref) + cell(ref).sums.mean_m(); }
 
   /// Calls visit(CellRef), or visit(CellRef, step) with the step from the cell, for each stored cell at most `depth`
   /// steps away, 26-connected (Definition 2), the cell itself included.
