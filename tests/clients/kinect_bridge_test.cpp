@@ -61,7 +61,8 @@ Recorded read_log(const std::string& path) {
 TEST_F(KinectBridge, HelpAndVersionAreThere) {
   const Finished help = bridge("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option : {"--dataset", "--simulate", "--seed", "--truth", "--log", "--pose-rate", "Exit codes"}) {
+  for (const char* option : {"--dataset", "--simulate", "--seed", "--truth", "--log", "--pose-rate", "Exit codes",
+                             "apartment", "door-ajar", "ceiling-glimpse"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
   const Finished version = bridge("--version");
@@ -124,6 +125,16 @@ TEST_F(KinectBridge, LogOfASimulationHoldsItsFramesAndTheTruthItsPlanes) {
     EXPECT_EQ(recorded.scans[k].encoding, planemap_lcm::depth_scan_t::ENCODING_ZLIB);
   }
   EXPECT_GT(nlohmann::json::parse(read_file(path("truth.json"))).at("planes").size(), 30u);
+}
+
+TEST_F(KinectBridge, SpecialRoomsAreRenderedByName) {
+  const Finished outcome = bridge("--simulate ceiling-glimpse --json --quiet --log '" + path("log") + "' --truth '" +
+                                  path("truth.json") + "'");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(outcome.out).at("frames"), 28) << "the room's own number";
+  const auto truth = nlohmann::json::parse(read_file(path("truth.json")));
+  ASSERT_EQ(truth.at("planes").size(), 6u);
+  EXPECT_EQ(truth.at("planes")[1].at("name"), "ceiling");
 }
 
 TEST_F(KinectBridge, SameSeedGivesTheSameLog) {

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <numbers>
+#include <planemap/simulation/scenes.hpp>
+#include <vector>
 
 #ifndef PLANEMAP_VERSION
 #error "PLANEMAP_VERSION is set by the build"
@@ -16,7 +18,6 @@ constexpr double kMaxRateHz = 10000.0;
 
 /// What CLI11 fills, where it is not the option itself.
 struct Raw {
-  std::string scene;
   std::string camera;
   std::optional<std::size_t> frames;
   double pose_noise_deg = 0.0;
@@ -30,21 +31,38 @@ CLI::Validator in_range(Number low, Number high) {
   return CLI::Range(low, high).description("");
 }
 
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const simulation::SceneInfo& scene : simulation::scenes()) names.emplace_back(scene.name);
+  return names;
+}
+
+/// For the help: each scene with what it shows.
+std::string scenes_text() {
+  std::string text = "Scenes:\n";
+  for (const simulation::SceneInfo& scene : simulation::scenes()) {
+    std::string line = "  " + std::string(scene.name);
+    line.resize(20, ' ');
+    text += line + std::string(scene.shows) + "\n";
+  }
+  return text + "\n";
+}
+
 void add_source_options(CLI::App& app, Options& options, Raw& raw) {
   auto* source = app.add_option_group("Source", "where the frames come from: one of");
   auto* dataset = source
                       ->add_option("--dataset", options.dataset,
                                    "7-Scenes or TUM RGB-D folder; the body of the pose messages is its camera")
                       ->type_name("FOLDER");
-  auto* simulate = source->add_option("--simulate", raw.scene, "a rendered scene whose planes are known: apartment")
-                       ->type_name("SCENE")
-                       ->check(CLI::IsMember({"apartment"}));
+  auto* simulate =
+      source->add_option("--simulate", options.simulation.scene, "a rendered scene whose planes are known; see below")
+          ->type_name("SCENE")
+          ->check(CLI::IsMember(scene_names()).description(""));
   source->require_option(1);
 
-  app.add_option(
-         "--frames", raw.frames,
-         "stop after N frames; a simulation spreads them evenly over one tour through all rooms (default: all; one "
-         "tour at true speed)")
+  app.add_option("--frames", raw.frames,
+                 "stop after N frames; a simulation spreads them evenly over one tour (default: all; one tour of the "
+                 "apartment at true speed, of a special room in 28 to 100 frames)")
       ->type_name("N")
       ->check(in_range(std::size_t{1}, std::size_t{1'000'000'000}));
   app.add_flag("--loop", options.loop, "begin again at the end, until stopped; utimes go on");
@@ -56,7 +74,7 @@ void add_source_options(CLI::App& app, Options& options, Raw& raw) {
       ->type_name("M")
       ->check(in_range(1e-9, 1.0))
       ->needs(dataset);
-  app.add_option("--seed", options.simulation.seed, "of apartment, tour and noise")
+  app.add_option("--seed", options.simulation.seed, "of the scene, its place in the world and the noise")
       ->type_name("N")
       ->capture_default_str()
       ->needs(simulate);
@@ -163,7 +181,7 @@ ParsedOptions parse_options(int argc, char** argv) {
   CLI::App app("Feeds planemap: publishes a recorded or a simulated Kinect's depth images and poses over LCM.",
                "planemap-kinect-bridge");
   app.set_version_flag("--version", "planemap-kinect-bridge " PLANEMAP_VERSION, "Print the version and exit");
-  app.footer("Exit codes: 0 done or stopped by a signal, 1 failed, 2 wrong use.");
+  app.footer(scenes_text() + "Exit codes: 0 done or stopped by a signal, 1 failed, 2 wrong use.");
   Options options;
   Raw raw;
   add_source_options(app, options, raw);

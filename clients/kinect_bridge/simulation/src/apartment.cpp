@@ -6,14 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "surface_builder.hpp"
-
 namespace planemap::simulation {
 namespace {
 
-constexpr double kTableTopM = 0.04;  // thickness
-constexpr double kLegM = 0.05;       // thickness
-constexpr double kLegInsetM = 0.05;
 constexpr double kTiltRad = 0.0175;  // one degree
 constexpr int kMaxTries = 1000;
 
@@ -93,21 +88,6 @@ void add_door_frame(const Door& door, const std::string& name, SurfaceBuilder& b
               {level_piece(Footprint::of(door.threshold()), door.height_m)});
 }
 
-void add_table(const Furniture& table, const std::string& name, SurfaceBuilder& builder) {
-  const double underside_m = table.top_m - kTableTopM;
-  builder.add_box(name, table.footprint, underside_m, table.top_m, {}, PlaneClass::kTable);
-  const Eigen::Vector2d reach_m = table.footprint.half_size_m - Eigen::Vector2d::Constant(kLegInsetM + 0.5 * kLegM);
-  for (int leg = 0; leg < 4; ++leg) {
-    Footprint footprint = table.footprint;
-    footprint.centre_m =
-        table.footprint.point_m(leg % 2 == 0 ? -reach_m.x() : reach_m.x(), leg / 2 == 0 ? -reach_m.y() : reach_m.y());
-    footprint.half_size_m = Eigen::Vector2d::Constant(0.5 * kLegM);
-    BoxFaces faces;
-    faces.top = false;  // under the table's top
-    builder.add_box(name + " leg " + std::to_string(leg + 1), footprint, 0.0, underside_m, faces, PlaneClass::kOther);
-  }
-}
-
 /// A board from the floor up to the wall, closed at its sides.
 void add_board(const Furniture& board, const std::string& name, SurfaceBuilder& builder) {
   const auto corners_m = board.footprint.corners_m();  // back left, back right, front right, front left
@@ -133,7 +113,7 @@ void add_furniture(const Furniture& item, const std::string& number, SurfaceBuil
   against_wall.high_x = item.high_side_free;
   switch (item.kind) {
     case FurnitureKind::kTable:
-      add_table(item, "table " + number, builder);
+      builder.add_table("table " + number, item.footprint, item.top_m);
       return;
     case FurnitureKind::kSlantedBoard:
       add_board(item, "slanted board " + number, builder);
@@ -158,6 +138,19 @@ void add_furniture(const Furniture& item, const std::string& number, SurfaceBuil
 
 }  // namespace
 
+Eigen::Isometry3d random_placement(Random& random) {
+  const double yaw_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const double tilt_axis_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const Eigen::Vector3d tilt_axis(std::cos(tilt_axis_rad), std::sin(tilt_axis_rad), 0.0);
+  Eigen::Isometry3d T_world_scene = Eigen::Isometry3d::Identity();
+  T_world_scene.linear() =
+      (Eigen::AngleAxisd(kTiltRad, tilt_axis) * Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+  T_world_scene.translation() =
+      Eigen::Vector3d{random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-0.5, 0.5)};
+  return T_world_scene;
+}
+
 Apartment make_apartment(Random& random) {
   Apartment apartment;
   for (int attempt = 0; attempt < kMaxTries && apartment.furniture.empty(); ++attempt) {
@@ -165,20 +158,11 @@ Apartment make_apartment(Random& random) {
     apartment.furniture = make_furniture(apartment.plan, random);
   }
   if (apartment.furniture.empty()) throw std::runtime_error("make_apartment: no room for the furniture in 1000 tries");
-
-  const double yaw_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
-  const double tilt_axis_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
-  const Eigen::Vector3d tilt_axis(std::cos(tilt_axis_rad), std::sin(tilt_axis_rad), 0.0);
-  apartment.T_world_apartment.linear() =
-      (Eigen::AngleAxisd(kTiltRad, tilt_axis) * Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))
-          .toRotationMatrix();
-  apartment.T_world_apartment.translation() =
-      Eigen::Vector3d{random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0), random.uniform(-0.5, 0.5)};
+  apartment.T_world_apartment = random_placement(random);
   return apartment;
 }
 
-std::vector<Surface> make_surfaces(const Apartment& apartment) {
-  SurfaceBuilder builder(apartment.T_world_apartment);
+void add_surfaces(const Apartment& apartment, SurfaceBuilder& builder) {
   add_shell(apartment.plan, builder);
   for (std::size_t i = 0; i < apartment.plan.doors.size(); ++i) {
     add_door_frame(apartment.plan.doors[i], "door " + std::to_string(i + 1), builder);
@@ -187,6 +171,11 @@ std::vector<Surface> make_surfaces(const Apartment& apartment) {
   for (const Furniture& item : apartment.furniture) {
     add_furniture(item, std::to_string(++count[item.kind]), builder);
   }
+}
+
+std::vector<Surface> make_surfaces(const Apartment& apartment) {
+  SurfaceBuilder builder(apartment.T_world_apartment);
+  add_surfaces(apartment, builder);
   return builder.take();
 }
 

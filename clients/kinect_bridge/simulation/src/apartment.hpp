@@ -6,6 +6,7 @@
 
 #include "floor_plan.hpp"
 #include "furniture.hpp"
+#include "surface_builder.hpp"
 
 namespace planemap::simulation {
 
@@ -16,10 +17,15 @@ struct Apartment {
   Eigen::Isometry3d T_world_apartment = Eigen::Isometry3d::Identity();
 };
 
-/// A random apartment, turned by any angle, moved and tilted by a degree, so that nothing lies along a grid.
+/// A random place in the world: turned by any angle, moved and tilted by a degree, so that nothing lies along a grid.
+Eigen::Isometry3d random_placement(Random& random);
+
+/// A random apartment at a random place.
 Apartment make_apartment(Random& random);
 
 /// Everything that can be seen, ids 1, 2, ... Left out: backs against walls, undersides and tops above eye level.
 std::vector<Surface> make_surfaces(const Apartment& apartment);
+/// The same, to be gone on with.
+void add_surfaces(const Apartment& apartment, SurfaceBuilder& builder);
 
 }  // namespace planemap::simulation

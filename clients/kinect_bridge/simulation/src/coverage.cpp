@@ -20,7 +20,7 @@ std::vector<Surface> poorly_seen(const Tour& tour, const Apartment& apartment, c
   std::vector<double> seen_m2(surfaces.size() + 1, 0.0);
   for (int k = 0; k < kFrames; ++k) {
     const double time_s = tour.duration_s() * k / kFrames;
-    const RenderedImage& image = renderer.render(apartment.T_world_apartment * tour.T_apartment_sensor(time_s));
+    const RenderedImage& image = renderer.render(apartment.T_world_apartment * tour.T_scene_sensor(time_s));
     for (std::size_t i = 0; i < image.surface.size(); ++i) {
       const float depth_m = image.depth_m[i];
       if (image.cos_incidence[i] < kLeastCosine || depth_m < kNearM || depth_m > kFarM) continue;

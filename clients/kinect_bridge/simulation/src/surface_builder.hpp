@@ -3,11 +3,14 @@
 #include <Eigen/Geometry>
 #include <planemap/simulation/surface.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "footprint.hpp"
 
 namespace planemap::simulation {
+
+constexpr double kTableTopM = 0.04;  ///< thickness
 
 /// Which faces of a box can be seen; sides as the footprint's own axes.
 struct BoxFaces {
@@ -18,13 +21,13 @@ struct BoxFaces {
   bool top = true;
 };
 
-/// Makes surfaces in the world of shapes in the apartment's frame.
+/// Makes surfaces in the world of shapes in the scene's frame.
 class SurfaceBuilder {
  public:
-  explicit SurfaceBuilder(const Eigen::Isometry3d& T_world_apartment) : T_world_apartment_(T_world_apartment) {}
+  explicit SurfaceBuilder(const Eigen::Isometry3d& T_world_scene) : T_world_scene_(T_world_scene) {}
 
   /// A surface with pieces in one plane, in any order of their corners.
-  /// @param normal  towards the free side, unit, apartment's frame
+  /// @param normal  towards the free side, unit, scene's frame
   void add(const std::string& name, PlaneClass plane_class, const Eigen::Vector3d& normal,
            const std::vector<ConvexPiece>& pieces_m);
 
@@ -32,10 +35,17 @@ class SurfaceBuilder {
   void add_box(const std::string& name, const Footprint& footprint, double bottom_m, double top_m,
                const BoxFaces& faces, PlaneClass top_class);
 
+  /// A round column, of facets; each is off the circle by 0.4 % of the radius at most.
+  void add_column(const std::string& name, const Eigen::Vector2d& centre_m, double radius_m, double bottom_m,
+                  double top_m);
+
+  /// A table's top and its four legs.
+  void add_table(const std::string& name, const Footprint& footprint, double top_m);
+
   std::vector<Surface> take() { return std::move(surfaces_); }
 
  private:
-  Eigen::Isometry3d T_world_apartment_;
+  Eigen::Isometry3d T_world_scene_;
   std::vector<Surface> surfaces_;
 };
 

@@ -240,11 +240,37 @@ std::optional<Tour> Tour::plan(const Apartment& apartment, const std::vector<Vie
   return tour;
 }
 
+void Tour::go_on(const Sample& goal, std::vector<Sample>& raw) {
+  const Sample start = raw.back();
+  const Eigen::Vector3d way_m = goal.position_m - start.position_m;
+  const double yaw_rad = std::remainder(goal.yaw_rad - start.yaw_rad, 2.0 * kPi);
+  const double pitch_rad = goal.pitch_rad - start.pitch_rad;
+  const double time_s =
+      std::max({way_m.norm() / kSpeedMPerS, std::abs(yaw_rad) / kTurnRadPerS, std::abs(pitch_rad) / kTurnRadPerS});
+  const int steps = std::max(1, static_cast<int>(std::ceil(time_s / kSampleS)));
+  for (int i = 1; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    raw.push_back(
+        {start.position_m + share * way_m, start.yaw_rad + share * yaw_rad, start.pitch_rad + share * pitch_rad});
+  }
+}
+
+Tour Tour::through(const std::vector<Station>& stations) {
+  const auto sample_at = [](const Station& station) {
+    const Eigen::Vector3d view_m = station.target_m - station.position_m;
+    return Sample{station.position_m, direction_rad(view_m.head<2>()), std::atan2(view_m.z(), view_m.head<2>().norm())};
+  };
+  std::vector<Sample> raw = {sample_at(stations.front())};
+  for (std::size_t i = 1; i < stations.size(); ++i) go_on(sample_at(stations[i]), raw);
+  go_on(sample_at(stations.front()), raw);
+  return Tour(raw);
+}
+
 double Tour::duration_s() const {
   return kSampleS * static_cast<double>(samples_.size());
 }
 
-Eigen::Isometry3d Tour::T_apartment_sensor(double time_s) const {
+Eigen::Isometry3d Tour::T_scene_sensor(double time_s) const {
   const double rounds = std::floor(time_s / duration_s());
   const double at = (time_s - rounds * duration_s()) / kSampleS;
   const std::size_t first = std::min(static_cast<std::size_t>(at), samples_.size() - 1);

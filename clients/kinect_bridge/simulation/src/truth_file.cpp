@@ -48,6 +48,7 @@ std::string truth_json(std::span<const Surface> surfaces) {
   std::string text = R"({"frame":"world","epoch":0,"revision":0,"planes":[)";
   const char* separator = "\n";
   for (const Surface& surface : surfaces) {
+    if (surface.facet) continue;
     text += separator + to_json(surface).dump();
     separator = ",\n";
   }

@@ -25,8 +25,10 @@ struct PoseNoiseConfig {
 
 /// A simulated recording.
 struct SimulationConfig {
-  std::uint64_t seed = 1;             ///< of the apartment, the tour and the noise
-  std::optional<std::size_t> frames;  ///< spread evenly over one tour; empty: as many as the rate gives at true speed
+  std::string scene = "apartment";    ///< one of scenes()
+  std::uint64_t seed = 1;             ///< of the apartment, of a room's place in the world, and of the noise
+  std::optional<std::size_t> frames;  ///< spread evenly over one tour; empty: a special room's own number, or as many
+                                      ///< as the rate gives at true speed
   bool loop = false;                  ///< go round for ever, each time with new noise
   double rate_hz = 30.0;              ///< of the frames' utimes; the first one is at kFirstUtime
   PinholeIntrinsics intrinsics{640, 480, 585.0, 585.0, 320.0, 240.0};
@@ -36,11 +38,11 @@ struct SimulationConfig {
 
 constexpr std::int64_t kFirstUtime = 1'000'000;  ///< microseconds
 
-/// A robot with a Kinect drives through a rendered apartment whose planes are known. Deterministic: the same
+/// A Kinect goes through a rendered scene whose planes are known. Deterministic: the same
 /// configuration gives the same frames.
 class SimulatedSource final : public sources::FrameSource {
  public:
-  /// Builds the apartment and plans the tour. Throws std::invalid_argument if a setting is out of its range.
+  /// Builds the scene and plans the tour. Throws std::invalid_argument if a setting is out of its range.
   explicit SimulatedSource(const SimulationConfig& config);
   ~SimulatedSource() override;
 
@@ -49,7 +51,7 @@ class SimulatedSource final : public sources::FrameSource {
   const std::map<std::string, std::size_t>& skipped() const override;  ///< always empty
   std::optional<Eigen::Vector3d> gravity_direction() const override;
 
-  /// All surfaces of the apartment, by id (1, 2, ...), world frame.
+  /// All surfaces of the scene, by id (1, 2, ...), world frame.
   const std::vector<Surface>& truth() const;
   /// Time that one tour takes at the robot's true speed.
   double tour_s() const;

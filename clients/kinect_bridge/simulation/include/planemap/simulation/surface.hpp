@@ -23,6 +23,7 @@ struct Surface {
   std::string name;  ///< in words, for instance "table 2 top"
   Plane plane = Plane::through(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());  ///< normal towards the free side
   PlaneClass plane_class = PlaneClass::kOther;
+  bool facet = false;                 ///< a strip of a curved surface, which is no plane
   std::vector<ConvexPiece> pieces_m;  ///< disjoint; corners counter-clockwise seen from the free side
 };
 
