@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "apartment_run.hpp"
+#include "scene_run.hpp"
 
 namespace planemap::accuracy {
 namespace {
@@ -14,7 +14,7 @@ Summary summary_of(const std::vector<std::uint64_t>& seeds) {
   for (const std::uint64_t seed : seeds) {
     RunConfig config;
     config.seed = seed;
-    runs.push_back(run_apartment(config));
+    runs.push_back(run_scene(config));
   }
   return summarise(runs);
 }

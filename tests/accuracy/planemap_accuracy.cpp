@@ -1,37 +1,24 @@
-// Maps rendered apartments and scores the maps against what is known of them.
+// Maps rendered scenes and scores the maps against what is known of them.
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <planemap/simulation/scenes.hpp>
 #include <string>
 #include <vector>
 
-#include "apartment_run.hpp"
 #include "config/service_config.hpp"
+#include "scene_run.hpp"
 
 namespace {
 
+using planemap::accuracy::CellNormals;
 using planemap::accuracy::Run;
 using planemap::accuracy::RunConfig;
 using planemap::accuracy::Summary;
 using planemap::accuracy::SurfaceScore;
 using planemap::accuracy::Verdict;
-
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kCorrect:
-      return "correct";
-    case Verdict::kOverSegmented:
-      return "over-segmented";
-    case Verdict::kUnderSegmented:
-      return "under-segmented";
-    case Verdict::kMissed:
-      break;
-  }
-  return "missed";
-}
 
 void print_surfaces(const Run& run) {
   for (const SurfaceScore& s : run.score.surfaces) {
@@ -48,13 +35,28 @@ void print_surfaces(const Run& run) {
   }
 }
 
+void print_heading(const std::string& preset) {
+  std::printf("%s\n  %-20s %7s %17s %5s %5s %6s %5s %9s %14s %14s  %6s %8s %6s %6s  %9s %5s %5s  %6s\n", preset.c_str(),
+              "scene", "planes", "correct", "over", "under", "missed", "noise", "labelled", "normal deg, max",
+              "offset mm, max", "nees", "mean", "<7.81", "95 %", "cells deg", "/dev", "p95", "ms");
+}
+
 void print_row(const std::string& name, const Summary& s) {
   std::printf(
-      "  %-14s %7zu %5zu (%5.1f %%) %5zu %5zu %6zu %5zu  %6.1f %%  %6.3f %6.3f  %6.2f %6.2f  %6.2f %5.1f %5.1f  "
-      "%6.1f\n",
+      "  %-20s %7zu %7zu (%5.1f %%) %5zu %5zu %6zu %5zu %7.1f %% %7.3f %7.3f %6.2f %7.2f  %6.2f %8.1f %6.1f %6.1f  "
+      "%9.3f %5.2f %5.2f  %6.1f\n",
       name.c_str(), s.surfaces, s.correct, 100.0 * s.correct_share(), s.over, s.under, s.missed, s.noise,
       100.0 * s.labelled_share, s.normal_mean_deg, s.normal_max_deg, 1e3 * s.offset_mean_m, 1e3 * s.offset_max_m,
-      s.nees_median, 100.0 * s.nees_below, 100.0 * s.nees_within, s.ms_per_scan);
+      s.nees_median, s.nees_mean, 100.0 * s.nees_below, 100.0 * s.nees_within, s.inside_cells.mean_deg,
+      s.inside_cells.ratio_median, s.inside_cells.ratio_p95, s.ms_per_scan);
+}
+
+nlohmann::json to_json(const CellNormals& c) {
+  return {{"cells", c.cells},
+          {"errorMeanDeg", c.mean_deg},
+          {"ratio", {{"median", c.ratio_median}, {"p90", c.ratio_p90}, {"p95", c.ratio_p95}, {"p99", c.ratio_p99}}},
+          {"shareWithin1", c.within_1},
+          {"shareWithin3", c.within_3}};
 }
 
 nlohmann::json to_json(const Summary& s) {
@@ -73,69 +75,123 @@ nlohmann::json to_json(const Summary& s) {
             {"mean", s.nees_mean},
             {"shareBelow", s.nees_below},
             {"shareWithin", s.nees_within}}},
+          {"cellNormals", {{"inside", to_json(s.inside_cells)}, {"all", to_json(s.cells)}}},
           {"msPerScan", s.ms_per_scan}};
 }
 
-}  // namespace
+/// The scenes that are meant: names, "special" for all special rooms, "all" for every scene. Throws
+/// CLI::ValidationError.
+std::vector<std::string> scenes_of(const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const std::string& want : wanted) {
+    bool found = false;
+    for (const auto& scene : planemap::simulation::scenes()) {
+      const bool special = scene.name != "apartment";
+      if (want != scene.name && want != "all" && !(want == "special" && special)) continue;
+      names.emplace_back(scene.name);
+      found = true;
+    }
+    if (!found) throw CLI::ValidationError("--scenes", "no scene '" + want + "'");
+  }
+  return names;
+}
 
-int main(int argc, char** argv) {
-  CLI::App app("Maps rendered apartments with known planes and scores the maps (Hoover's measure at 80 % overlap).");
-  RunConfig config;
+std::string scenes_help() {
+  std::string text = "all, special (all but the apartment), or any of";
+  for (const auto& scene : planemap::simulation::scenes()) text += " " + std::string(scene.name);
+  return text;
+}
+
+struct Options {
+  RunConfig run;
+  std::vector<std::string> scenes = {"apartment"};
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<std::string> presets = {"best", "paper"};
   std::vector<std::string> overrides;
   bool json = false;
   bool surfaces = false;
-  app.add_option("--seeds", seeds, "apartments, each from its seed")->delimiter(',')->capture_default_str();
-  app.add_option("--preset", presets, "best, paper or both")
+};
+
+void add_options(CLI::App& app, Options& options) {
+  RunConfig& run = options.run;
+  app.add_option("--scenes", options.scenes, scenes_help())->delimiter(',')->capture_default_str();
+  app.add_option("--seeds", options.seeds, "of each scene")->delimiter(',')->capture_default_str();
+  app.add_option("--preset", options.presets, "best, paper or both")
       ->delimiter(',')
       ->check(CLI::IsMember({"best", "paper"}))
       ->capture_default_str();
-  app.add_option("--set", overrides, "any setting, as section.key=value");
-  app.add_option("--frames", config.frames, "frames of one tour")->check(CLI::Range(1, 1000000))->capture_default_str();
-  app.add_option("--noise", config.noise_scale, "times the Kinect's own noise")->capture_default_str();
-  app.add_option("--pose-noise-m", config.pose_sigma_m, "standard deviation of the poses' position")
+  app.add_option("--set", options.overrides, "any setting, as section.key=value");
+  app.add_option("--frames", run.frames, "frames of one tour (default: 300 of the apartment, a special room's own)")
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--noise", run.noise_scale, "times the Kinect's own noise")->capture_default_str();
+  app.add_option("--pose-noise-m", run.pose_sigma_m, "standard deviation of the poses' position")
       ->capture_default_str();
-  app.add_option("--pose-noise-deg", config.pose_sigma_deg, "and of their rotation")->capture_default_str();
-  app.add_option("--pose-correlation-s", config.pose_correlation_s, "time constant of the poses' errors; 0: white")
+  app.add_option("--pose-noise-deg", run.pose_sigma_deg, "and of their rotation")->capture_default_str();
+  app.add_option("--pose-correlation-s", run.pose_correlation_s, "time constant of the poses' errors; 0: white")
       ->capture_default_str();
-  app.add_flag("--surfaces", surfaces, "list every surface");
-  app.add_flag("--json", json, "one JSON object instead of tables");
-  CLI11_PARSE(app, argc, argv);
+  app.add_option("--scale-covariance", run.scoring.covariance_scale,
+                 "multiply the planes' covariances before they are scored: shows that wrong ones fail")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  app.add_flag("--surfaces", options.surfaces, "list every surface");
+  app.add_flag("--json", options.json, "one JSON object instead of tables");
+}
 
-  try {
-    nlohmann::json all = nlohmann::json::object();
-    for (const std::string& preset : presets) {
-      const auto settings = planemap::service::load_config({preset, "", overrides});
-      if (!settings) {
-        std::fprintf(stderr, "planemap-accuracy: %s\n", settings.error().message.c_str());
-        return 2;
-      }
-      config.mapping = settings->mapper;
-      if (!json) {
-        std::printf("%s\n  %-14s %7s %16s %5s %5s %6s %5s  %8s  %13s  %13s  %18s  %6s\n", preset.c_str(), "scene",
-                    "planes", "correct", "over", "under", "missed", "noise", "labelled", "normal deg", "offset mm",
-                    "nees <7.8 2-sided", "ms");
-      }
-      std::vector<Run> runs;
-      for (const std::uint64_t seed : seeds) {
-        config.seed = seed;
-        runs.push_back(planemap::accuracy::run_apartment(config));
-        const Summary summary = planemap::accuracy::summarise({&runs.back(), 1});
-        all[preset]["scenes"]["apartment-" + std::to_string(seed)] = to_json(summary);
-        if (json) continue;
-        print_row("apartment " + std::to_string(seed), summary);
-        if (surfaces) print_surfaces(runs.back());
-        std::fflush(stdout);
-      }
-      const Summary summary = planemap::accuracy::summarise(runs);
-      all[preset]["all"] = to_json(summary);
-      if (!json) print_row("all", summary);
+/// Maps and scores every scene with each of its seeds, by one preset.
+nlohmann::json run_all(Options& options, const std::string& preset) {
+  nlohmann::json result = nlohmann::json::object();
+  if (!options.json) print_heading(preset);
+  std::vector<Run> runs;
+  for (const std::string& scene : options.scenes) {
+    for (const std::uint64_t seed : options.seeds) {
+      options.run.scene = scene;
+      options.run.seed = seed;
+      runs.push_back(planemap::accuracy::run_scene(options.run));
+      const Summary summary = planemap::accuracy::summarise({&runs.back(), 1});
+      result["scenes"][scene + "-" + std::to_string(seed)] = to_json(summary);
+      if (options.json) continue;
+      print_row(scene + " " + std::to_string(seed), summary);
+      if (options.surfaces) print_surfaces(runs.back());
+      std::fflush(stdout);
     }
-    if (json) std::printf("%s\n", all.dump(2).c_str());
+  }
+  const Summary summary = planemap::accuracy::summarise(runs);
+  result["all"] = to_json(summary);
+  if (!options.json) print_row("all", summary);
+  return result;
+}
+
+int run(Options& options) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const std::string& preset : options.presets) {
+    const auto settings = planemap::service::load_config({preset, "", options.overrides});
+    if (!settings) {
+      std::fprintf(stderr, "planemap-accuracy: %s\n", settings.error().message.c_str());
+      return 2;
+    }
+    options.run.mapping = settings->mapper;
+    all[preset] = run_all(options, preset);
+  }
+  if (options.json) std::printf("%s\n", all.dump(2).c_str());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Maps rendered scenes with known planes and scores the maps (Hoover's measure at 80 % overlap).");
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+    options.scenes = scenes_of(options.scenes);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    return run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "planemap-accuracy: %s\n", error.what());
     return 1;
   }
-  return 0;
 }

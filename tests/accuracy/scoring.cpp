@@ -11,8 +11,6 @@ namespace planemap::accuracy {
 
 namespace {
 
-constexpr double kPatch_m2 = SeenSurfaces::kPitch_m * SeenSurfaces::kPitch_m;
-
 /// Cells, found by place.
 class CellFinder {
  public:
@@ -63,11 +61,16 @@ class CellFinder {
   std::map<Key, std::vector<CellView>> cells_;
 };
 
-/// Squared error of (n, d) in units of its covariance, by the pseudo-inverse of rank 3.
-double nees_of(const PlaneRecord& record, const Plane& truth) {
+/// Also right for tiny angles, where the cosine is 1 to the last digit.
+double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Squared error of (n, d) in units of its covariance times a factor, by the pseudo-inverse of rank 3.
+double nees_of(const PlaneRecord& record, const Plane& truth, double covariance_scale) {
   Eigen::Vector4d error;
   error << record.plane.normal() - truth.normal(), record.plane.d() - truth.d();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(record.covariance);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(covariance_scale * record.covariance);
   double nees = 0.0;
   for (int i = 1; i < 4; ++i) {
     const double along = solver.eigenvectors().col(i).dot(error);
@@ -80,23 +83,28 @@ double nees_of(const PlaneRecord& record, const Plane& truth) {
 struct Table {
   std::vector<double> seen_m2;                        ///< by surface
   std::vector<std::map<PlaneId, double>> overlap_m2;  ///< by surface, then plane
+  std::map<PlaneId, double> facet_m2;                 ///< of a plane: what lies as a facet on curved surfaces
   std::map<PlaneId, double> plane_m2;                 ///< all of a plane: on surfaces, and on none
 };
 
 Table tabulate(const MapSnapshot& map, const SeenSurfaces& seen) {
-  Table table{std::vector<double>(seen.surfaces().size()), {}, {}};
+  Table table{std::vector<double>(seen.surfaces().size()), {}, {}, {}};
   table.overlap_m2.resize(seen.surfaces().size());
   const CellFinder cells(map);
   const double size_m = map.cell_size_m();
   std::map<std::array<int, 3>, bool> near_surface;
   for (const SeenSurfaces::Patch& patch : seen.patches()) {
-    table.seen_m2[patch.surface] += kPatch_m2;
+    const simulation::Surface& surface = seen.surfaces()[patch.surface];
+    table.seen_m2[patch.surface] += patch.area_m2;
     const Eigen::Array3i i = (patch.centre_m.array() / size_m).floor().cast<int>();
     near_surface[{i.x(), i.y(), i.z()}] = true;
-    const PlaneId plane = cells.plane_at(patch.centre_m, seen.surfaces()[patch.surface].plane.normal());
+    const PlaneId plane = cells.plane_at(patch.centre_m, surface.plane.normal());
     if (plane == kNoPlane) continue;
-    table.overlap_m2[patch.surface][plane] += kPatch_m2;
-    table.plane_m2[plane] += kPatch_m2;
+    table.overlap_m2[patch.surface][plane] += patch.area_m2;
+    table.plane_m2[plane] += patch.area_m2;
+    if (surface.facet && std::abs(map.find(plane)->plane.signed_distance_m(patch.centre_m)) <= kFacetOffset_m) {
+      table.facet_m2[plane] += patch.area_m2;
+    }
   }
   // Cells that hang in the air weigh against their plane.
   map.for_each_cell([&](const CellView& cell) {
@@ -127,7 +135,46 @@ Verdict judge(const Table& table, std::size_t surface, const SurfaceScore& best,
   return Verdict::kMissed;
 }
 
+/// Errors of the plane of a correct surface.
+void measure(const PlaneRecord& record, const Plane& truth, double covariance_scale, SurfaceScore& s) {
+  s.normal_error_deg = angle_rad(record.plane.normal(), truth.normal()) * 180.0 / std::numbers::pi;
+  s.offset_error_m = std::abs(truth.signed_distance_m(record.centroid_m));
+  s.nees = nees_of(record, truth, covariance_scale);
+}
+
+/// @param correct  correct surfaces by their planes
+std::vector<CellNormalError> cell_normal_errors(const MapSnapshot& map, const SeenSurfaces& seen,
+                                                const std::map<PlaneId, std::size_t>& correct) {
+  // A neighbourhood of depth 1 goes a cell and a half from the middle of its cell, and a centre lies half a cell off
+  // that.
+  const double reach_m = 2.0 * map.cell_size_m();
+  std::vector<CellNormalError> errors;
+  map.for_each_cell([&](const CellView& cell) {
+    const auto found = correct.find(cell.plane_id);
+    if (!cell.normal || found == correct.end()) return;
+    const Plane& truth = seen.surfaces()[found->second].plane;
+    const bool inside = std::abs(truth.signed_distance_m(cell.centre_m)) < map.cell_size_m() &&
+                        seen.all_seen_about(found->second, cell.centre_m, reach_m);
+    errors.push_back({angle_rad(*cell.normal, truth.normal()), cell.deviation_rad, inside});
+  });
+  return errors;
+}
+
 }  // namespace
+
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kCorrect:
+      return "correct";
+    case Verdict::kOverSegmented:
+      return "over-segmented";
+    case Verdict::kUnderSegmented:
+      return "under-segmented";
+    case Verdict::kMissed:
+      break;
+  }
+  return "missed";
+}
 
 std::size_t Score::count(Verdict verdict) const {
   return static_cast<std::size_t>(
@@ -143,12 +190,14 @@ double Score::labelled_m2() const {
                          [](double a, const auto& s) { return a + s.labelled_m2; });
 }
 
-Score score(const MapSnapshot& map, const SeenSurfaces& seen, double overlap, double least_m2) {
+Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions& options) {
   const Table table = tabulate(map, seen);
   Score result;
   std::map<PlaneId, bool> on_surface;
+  std::map<PlaneId, std::size_t> correct;  // surface by plane
   for (std::size_t i = 0; i < seen.surfaces().size(); ++i) {
     const simulation::Surface& surface = seen.surfaces()[i];
+    if (surface.facet) continue;
     SurfaceScore s;
     s.name = surface.name;
     s.seen_m2 = table.seen_m2[i];
@@ -162,20 +211,21 @@ Score score(const MapSnapshot& map, const SeenSurfaces& seen, double overlap, do
       s.overlap = m2 / s.seen_m2;
       s.purity = m2 / table.plane_m2.at(plane);
     }
-    if (s.seen_m2 < least_m2) continue;
-    s.verdict = judge(table, i, s, overlap);
+    if (s.seen_m2 < options.least_m2) continue;
+    s.verdict = judge(table, i, s, options.overlap);
     if (s.verdict == Verdict::kCorrect) {
-      const PlaneRecord& record = *map.find(s.plane);
-      const double cosine = std::clamp(record.plane.normal().dot(surface.plane.normal()), -1.0, 1.0);
-      s.normal_error_deg = std::acos(cosine) * 180.0 / std::numbers::pi;
-      s.offset_error_m = std::abs(surface.plane.signed_distance_m(record.centroid_m));
-      s.nees = nees_of(record, surface.plane);
+      measure(*map.find(s.plane), surface.plane, options.covariance_scale, s);
+      correct[s.plane] = i;
     }
     result.surfaces.push_back(s);
   }
-  for (const auto& [plane, m2] : table.plane_m2) {
-    if (m2 >= least_m2 && !on_surface[plane]) result.noise.push_back(plane);
+  for (const auto& [plane, m2] : table.facet_m2) {
+    if (m2 >= options.overlap * table.plane_m2.at(plane)) on_surface[plane] = true;
   }
+  for (const auto& [plane, m2] : table.plane_m2) {
+    if (m2 >= options.least_m2 && !on_surface[plane]) result.noise.push_back(plane);
+  }
+  result.cell_normals = cell_normal_errors(map, seen, correct);
   return result;
 }
 

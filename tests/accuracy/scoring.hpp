@@ -12,6 +12,8 @@ namespace planemap::accuracy {
 /// How a true surface fared: Hoover et al., An Experimental Comparison of Range Image Segmentation Algorithms, 1996.
 enum class Verdict { kCorrect, kOverSegmented, kUnderSegmented, kMissed };
 
+const char* name_of(Verdict verdict);
+
 /// One true surface of which enough was seen.
 struct SurfaceScore {
   std::string name;
@@ -27,18 +29,35 @@ struct SurfaceScore {
   double nees = 0.0;            ///< normalised squared error of (n, d), 3 degrees of freedom
 };
 
+/// The normal of a dense cell in the plane of a correct surface.
+struct CellNormalError {
+  double error_rad = 0.0;      ///< angle to the surface's normal
+  double deviation_rad = 0.0;  ///< what the cell states
+  bool inside = false;         ///< nothing but this surface, and all of it seen, within the cell's neighbourhood
+};
+
 struct Score {
   std::vector<SurfaceScore> surfaces;
   std::vector<PlaneId> noise;  ///< planes of at least the least area that are on no surface, with too little overlap
+  std::vector<CellNormalError> cell_normals;
 
   std::size_t count(Verdict verdict) const;
   double seen_m2() const;
   double labelled_m2() const;
 };
 
-/// Scores a map against what was seen of the truth.
-/// @param overlap      share that makes a surface correct (Hoover's T)
-/// @param least_m2     surfaces of which less was seen don't count
-Score score(const MapSnapshot& map, const SeenSurfaces& seen, double overlap = 0.8, double least_m2 = 0.25);
+struct ScoreOptions {
+  double overlap = 0.8;           ///< share that makes a surface correct (Hoover's T)
+  double least_m2 = 0.25;         ///< surfaces of which less was seen don't count
+  double covariance_scale = 1.0;  ///< times the planes' covariances: wrong ones must show in the NEES
+};
+
+/// Scores a map against what was seen of the truth. Facets of curved surfaces are not to be found; but a plane on them
+/// is no noise if it lies there as a facet does: at least the overlap of it within kFacetOffset_m of the curved
+/// surface.
+Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions& options = {});
+
+/// A Kinect's standard error at 2.6 m: a strip that departs from the curved surface by less is flat to it.
+constexpr double kFacetOffset_m = 0.01;
 
 }  // namespace planemap::accuracy

@@ -24,16 +24,22 @@ class SeenSurfaces {
   struct Patch {
     std::size_t surface;       ///< place in surfaces()
     Eigen::Vector3d centre_m;  ///< world frame
+    double area_m2;            ///< of the square; less on facets, which are narrower than it
   };
   /// All squares that were seen, surface by surface, in an order that depends on the recording alone.
   std::vector<Patch> patches() const;
   const std::vector<simulation::Surface>& surfaces() const { return surfaces_; }
+  /// In how many frames a surface had a return.
+  std::size_t frames(std::size_t surface) const { return frames_[surface]; }
+  /// Whether all squares of a surface that come within a distance of a point were seen.
+  bool all_seen_about(std::size_t surface, const Eigen::Vector3d& p_world_m, double distance_m) const;
 
  private:
   std::vector<simulation::Surface> surfaces_;
   std::vector<PlaneBasis> bases_;
   double max_range_m_;
-  std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> hits_;
+  std::vector<std::unordered_map<std::uint64_t, std::uint32_t>> hits_;  // by surface, then square
+  std::vector<std::size_t> frames_;                                     // by surface
 };
 
 }  // namespace planemap::accuracy

@@ -1,0 +1,55 @@
+#include "scene_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <planemap/mapper.hpp>
+#include <planemap/simulation/simulated_source.hpp>
+#include <utility>
+
+namespace planemap::accuracy {
+
+namespace {
+
+constexpr std::size_t kApartmentFrames = 300;
+
+simulation::SimulationConfig simulation_of(const RunConfig& config) {
+  simulation::SimulationConfig scene;
+  scene.scene = config.scene;
+  scene.seed = config.seed;
+  scene.frames = config.frames;
+  if (config.scene == "apartment" && !config.frames) scene.frames = kApartmentFrames;
+  scene.depth_noise.scale = config.noise_scale;
+  scene.pose_noise.sigma_m = config.pose_sigma_m;
+  scene.pose_noise.sigma_rad = config.pose_sigma_deg * std::numbers::pi / 180.0;
+  scene.pose_noise.correlation_s = config.pose_correlation_s;
+  return scene;
+}
+
+}  // namespace
+
+MappedScene map_scene(const RunConfig& config) {
+  simulation::SimulatedSource source(simulation_of(config));
+  Mapper mapper(config.mapping, /*epoch=*/1);
+  SeenSurfaces seen(source.truth(), config.mapping.sensor.max_range_m);
+  std::chrono::steady_clock::duration spent{};
+  std::size_t scans = 0;
+  while (auto frame = source.next()) {
+    seen.add(source, frame->scan);
+    const Scan scan = std::move(frame->scan);
+    const auto begin = std::chrono::steady_clock::now();
+    mapper.integrate(scan, frame->T_world_sensor);
+    spent += std::chrono::steady_clock::now() - begin;
+    ++scans;
+  }
+  const double ms_per_scan =
+      std::chrono::duration<double, std::milli>(spent).count() / static_cast<double>(std::max<std::size_t>(scans, 1));
+  return {mapper.snapshot(), std::move(seen), ms_per_scan};
+}
+
+Run run_scene(const RunConfig& config) {
+  const MappedScene mapped = map_scene(config);
+  return {score(*mapped.map, mapped.seen, config.scoring), mapped.ms_per_scan};
+}
+
+}  // namespace planemap::accuracy

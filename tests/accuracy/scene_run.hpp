@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <planemap/config.hpp>
+#include <planemap/snapshot.hpp>
+#include <string>
+
+#include "seen_surfaces.hpp"
+#include "summary.hpp"
+
+namespace planemap::accuracy {
+
+/// One rendered scene to be mapped.
+struct RunConfig {
+  std::string scene = "apartment";  ///< one of simulation::scenes()
+  std::uint64_t seed = 1;
+  std::optional<std::size_t> frames;  ///< empty: 300 of the apartment, a special room's own number
+  MapperConfig mapping = preset(Preset::kBest);
+  double noise_scale = 1.0;
+  double pose_sigma_m = 0.0;
+  double pose_sigma_deg = 0.0;
+  double pose_correlation_s = 0.0;
+  ScoreOptions scoring;
+};
+
+/// A scene and the map that was made of it.
+struct MappedScene {
+  std::shared_ptr<const MapSnapshot> map;
+  SeenSurfaces seen;
+  double ms_per_scan = 0.0;  ///< mean, milliseconds
+};
+
+/// Renders the scene and maps it.
+MappedScene map_scene(const RunConfig& config);
+
+/// Renders the scene, maps it and scores the map.
+Run run_scene(const RunConfig& config);
+
+}  // namespace planemap::accuracy
