@@ -33,7 +33,7 @@ struct SurfaceScore {
 struct CellNormalError {
   double error_rad = 0.0;      ///< angle to the surface's normal
   double deviation_rad = 0.0;  ///< what the cell states
-  bool inside = false;         ///< nothing but this surface, and all of it seen, within the cell's neighbourhood
+  bool inside = false;         ///< all of the surface within the cell's neighbourhood was seen: no edge is near
 };
 
 struct Score {
