@@ -221,7 +221,8 @@ Tour::Tour(const std::vector<Sample>& raw)
   }
   for (int i = 0; i < count; ++i) {
     for (int k = -reach; k <= reach; ++k) {
-      const int rounds = i + k < 0 ? -1 : (i + k) / count;  // the neighbours of the ends are in the next round
+      // The neighbours of the ends are in the rounds before and after: division that rounds down.
+      const int rounds = (i + k >= 0 ? i + k : i + k - count + 1) / count;
       const Sample& neighbour = raw[static_cast<std::size_t>(i + k - rounds * count)];
       const double weight = weights[k + reach] / weight_sum;
       samples_[i].position_m += weight * neighbour.position_m;
