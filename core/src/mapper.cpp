@@ -43,10 +43,10 @@ class Mapper::Impl {
         local_(config.grid, config.normals, config.planes),
         planes_(config.grid, config.planes, config.pose_error) {}
 
-  ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer) {
+  ScanReport integrate(const Scan& scan, const ScanPose& pose, StageObserver* observer) {
     ScanReport report;
-    utime_ = std::max(utime_, utime_of(scan));
-    assign(scan, T_world_sensor, observer, report);
+    utime_ = std::max(utime_, pose.utime);
+    assign(scan, pose.T_world_sensor, observer, report);
     fit_normals(observer);
     std::vector<LocalPlane> local;
     {
@@ -55,7 +55,7 @@ class Mapper::Impl {
     }
     {
       const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
-      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), {T_world_sensor, utime_of(scan)});
+      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), pose);
       assigner_.finish(grid_);
       report.local_planes = local.size();
       report.new_planes = global.new_planes;
@@ -131,8 +131,9 @@ Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 
-ScanReport Mapper::integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer) {
-  return impl_->integrate(scan, T_world_sensor, observer);
+ScanReport Mapper::integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer,
+                             const std::optional<PoseCovariance>& pose_covariance) {
+  return impl_->integrate(scan, ScanPose{T_world_sensor, utime_of(scan), pose_covariance}, observer);
 }
 
 std::shared_ptr<const MapSnapshot> Mapper::snapshot(StageObserver* observer) {

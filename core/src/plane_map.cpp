@@ -19,6 +19,13 @@ constexpr std::size_t kReweighedCells = 256;
 /// it: its fit gets better without growth.
 constexpr int kBridgingScans = 10;
 
+/// What a pose's error adds to the bands about planes. Where poses err by more than the distance at which planes are
+/// told apart, no band holds a surface together without taking in the cells of others. A filter that drifts says so of
+/// itself in the end, though scans that follow each other fit well.
+double band_variance_m2(const PoseCovariance& pose, double plane_offset_m) {
+  return std::min(point_variance_m2(pose), plane_offset_m * plane_offset_m);
+}
+
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
@@ -31,7 +38,9 @@ PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes, const Pose
     : grid_config_(grid),
       config_(planes),
       pose_error_(pose_error),
-      pose_variance_m2_(pose_error.point_variance_m2()),
+      poses_err_(pose_error.any()),
+      last_pose_(configured_covariance(pose_error)),
+      pose_variance_m2_(band_variance_m2(last_pose_, planes.plane_offset_m)),
       max_angle_rad_(planes.normal_angle_deg * kRadPerDeg),
       core_cosine_(std::cos(planes.core_angle_deg * kRadPerDeg)),
       states_(1),
@@ -207,7 +216,7 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
     coarse_.add(centre_m, survivor);
   }
   into.statistics.add(from.statistics);
-  if (pose_error_.any()) {
+  if (poses_err_) {
     into.pose_evidence.add(from.pose_evidence, from.statistics.origin_m() - into.statistics.origin_m(), pose_error_);
   }
   into.first_seen_utime = std::min(into.first_seen_utime, from.first_seen_utime);
@@ -261,6 +270,7 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
 GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> local,
                              std::span<const CellChange> changes, const ScanPose& scan) {
   GlobalReport report;
+  take_pose(scan);
   for (const LocalPlane& plane : local) merge_local(grid, plane, scan.utime, report);
   if (config_.adoption) adopt(grid, changes);
   if (config_.bridge_gap_m > 0.0) bridge(grid, report);
@@ -274,8 +284,16 @@ GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> lo
     refit(slot);
   }
   touched_.clear();
-  if (pose_error_.any()) note_pose(grid, changes, scan);
+  if (poses_err_) note_pose(grid, changes, scan);
   return report;
+}
+
+/// The bands hold cells of many scans: they are as wide as the mean of what the scans say.
+void PlaneMap::take_pose(const ScanPose& scan) {
+  last_pose_ = scan.covariance_or(pose_error_);
+  poses_err_ = poses_err_ || !last_pose_.isZero(0.0);
+  const double variance_m2 = band_variance_m2(last_pose_, config_.plane_offset_m);
+  pose_variance_m2_ += (variance_m2 - pose_variance_m2_) / static_cast<double>(++scans_);
 }
 
 void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan) {
@@ -411,8 +429,8 @@ PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
   record.plane = plane.fit.plane;
   // The weight that the fit was made from: a plane whose core cells have all left stands as it was last fitted.
   Eigen::Matrix3d covariance = sensor_covariance(plane.fit, config_.offset_floor_m);
-  if (pose_error_.any()) {
-    covariance += plane.pose_evidence.covariance(plane.fit, plane.statistics.origin_m(), pose_error_);
+  if (poses_err_) {
+    covariance += plane.pose_evidence.covariance(plane.fit, plane.statistics.origin_m(), last_pose_);
   }
   record.covariance = covariance_of(plane.fit, covariance);
   record.centroid_m = plane.fit.centroid_m;

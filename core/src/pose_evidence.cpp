@@ -8,16 +8,6 @@ namespace planemap {
 
 namespace {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-/// The diagonal of X.
-Vector6d pose_variances(const PoseErrorConfig& config) {
-  Vector6d variances;
-  variances.head<3>().setConstant(config.sigma_m * config.sigma_m);
-  variances.tail<3>().setConstant(config.sigma_rad * config.sigma_rad);
-  return variances;
-}
-
 /// sum w a a^T with a = (p - origin, 1).
 Eigen::Matrix4d homogeneous(const Moments& moments) {
   Eigen::Matrix4d m;
@@ -52,11 +42,11 @@ void PoseEvidence::pass_time(std::int64_t utime, const PoseErrorConfig& config) 
 void PoseEvidence::add(const Moments& seen, const Eigen::Vector3d& normal, const Eigen::Vector3d& origin_m,
                        const ScanPose& scan, const PoseErrorConfig& config) {
   const Eigen::Matrix4d m = homogeneous(seen);
-  const Matrix46 b = m * leverage(normal, origin_m, scan.T_world_sensor).transpose();
-  const Vector6d x = pose_variances(config);
+  const Matrix46 b =
+      m * leverage(normal, origin_m, scan.T_world_sensor).transpose() * cholesky_factor(scan.covariance_or(config));
   pass_time(scan.utime, config);
-  const Eigen::Matrix4d shared = b * x.asDiagonal() * carried_.transpose();
-  spread_ += b * x.asDiagonal() * b.transpose() + shared + shared.transpose();
+  const Eigen::Matrix4d shared = b * carried_.transpose();
+  spread_ += b * b.transpose() + shared + shared.transpose();
   carried_ += b;
   normal_equations_ += m;
 }
@@ -83,7 +73,7 @@ void PoseEvidence::add(const PoseEvidence& other, const Eigen::Vector3d& shift_m
 }
 
 Eigen::Matrix3d PoseEvidence::covariance(const PlaneFit& fit, const Eigen::Vector3d& origin_m,
-                                         const PoseErrorConfig& config) const {
+                                         const PoseCovariance& of_one_scan) const {
   const Eigen::Vector3d centroid = fit.centroid_m - origin_m;
   Eigen::Matrix<double, 3, 4> to_fit;                                 // from a to (u, v, 1) about the centroid
   to_fit << fit.tangent_1.transpose(), -fit.tangent_1.dot(centroid),  //
@@ -99,8 +89,8 @@ Eigen::Matrix3d PoseEvidence::covariance(const PlaneFit& fit, const Eigen::Vecto
     solver.computeDirect(scale.asDiagonal() * equations * scale.asDiagonal() / weight);
   }
   if (!spans || !(solver.eigenvalues()(0) > kLeastShare)) {
-    const double rotation = config.sigma_rad * config.sigma_rad;
-    return Eigen::Vector3d(rotation, rotation, config.sigma_m * config.sigma_m).asDiagonal();
+    const double rotation = greatest_variance(of_one_scan.bottomRightCorner<3, 3>());
+    return Eigen::Vector3d(rotation, rotation, greatest_variance(of_one_scan.topLeftCorner<3, 3>())).asDiagonal();
   }
   const Eigen::Matrix3d inverse = equations.inverse();
   return inverse * to_fit * spread_ * to_fit.transpose() * inverse;

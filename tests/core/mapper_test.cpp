@@ -121,6 +121,35 @@ TEST(Mapper, EveryRecordIsSoundAlsoThatOfASingleCell) {
   }
 }
 
+TEST(Mapper, AStatedCovarianceCountsLikeTheConfiguredOne) {
+  const Room room;
+  MapperConfig exact = preset(Preset::kBest);
+  exact.pose_error.correlation_s = 1.0;
+  MapperConfig configured = exact;
+  configured.pose_error.sigma_m = 0.004;
+  configured.pose_error.sigma_rad = 0.002;
+  const auto map_of = [&](const MapperConfig& config, const std::optional<PoseCovariance>& stated) {
+    Mapper mapper(config, 7);
+    for (int i = 0; i < 15; ++i) mapper.integrate(room.scan(i), Room::pose(i), nullptr, stated);
+    return mapper.snapshot();
+  };
+  const auto without = map_of(exact, std::nullopt);
+  const auto by_config = map_of(configured, std::nullopt);
+  const auto by_scan = map_of(exact, configured_covariance(configured.pose_error));
+  ASSERT_EQ(by_scan->planes().size(), by_config->planes().size());
+  ASSERT_GT(by_scan->planes().size(), 3U);
+  for (std::size_t i = 0; i < by_scan->planes().size(); ++i) {
+    const PlaneRecord& record = *by_scan->planes()[i];
+    EXPECT_EQ(record.id, by_config->planes()[i]->id);
+    EXPECT_TRUE(record.covariance.isApprox(by_config->planes()[i]->covariance, 1e-9)) << record.id;
+  }
+  for (const auto& record : without->planes()) {
+    const auto* other = by_scan->find(record->id);
+    if (record->cell_count < 60 || other == nullptr) continue;
+    EXPECT_GT(other->covariance(3, 3), 2.0 * record->covariance(3, 3)) << record->id;
+  }
+}
+
 TEST(Mapper, EveryCellOfAPlaneIsCountedInItsRecord) {
   Mapper mapper = mapped(Room(), 25);
   const auto map = mapper.snapshot();
@@ -254,6 +283,32 @@ TEST(Mapper, WithoutBridgingTheyStayTwo) {
 
 TEST(Mapper, PiecesThatAreNotCoplanarAreNotBridged) {
   EXPECT_EQ(planes_across_a_gap(1.0, 0.05), 2U);
+}
+
+bool on_boxes(const Vector3d& p) {
+  return std::abs(std::remainder(p.y(), 0.64)) < 0.12 && std::abs(std::remainder(p.z(), 0.64)) < 0.12;
+}
+
+TEST(Mapper, AScanOfAHopelessPoseDoesNotWidenTheBandsForGood) {
+  // A wall, and boxes of a few cells that stand 7 cm before it; one scan in twenty may be off by 5 m.
+  const std::vector<testing::Wall> wall = {{-Vector3d::UnitX(), 2.5}, {-Vector3d::UnitX(), 2.43, on_boxes}};
+  const auto cells_of_the_wall = [&](double sigma_m) {
+    PoseErrorConfig hopeless;
+    hopeless.sigma_m = sigma_m;
+    Mapper mapper(preset(Preset::kBest), 1);
+    const Isometry3d T = testing::looking({0.0, 0.0, 0.1}, {2.5, 0.0, 0.1});
+    for (int i = 0; i < 20; ++i) {
+      const PoseCovariance x = i == 3 ? configured_covariance(hopeless) : PoseCovariance(PoseCovariance::Zero());
+      mapper.integrate(testing::render(wall, T, static_cast<std::uint64_t>(i)), T, nullptr, x);
+    }
+    std::uint32_t most = 0;
+    const auto map = mapper.snapshot();
+    for (const auto& record : map->planes()) most = std::max(most, record->cell_count);
+    return most;
+  };
+  const std::uint32_t expected = cells_of_the_wall(0.0);
+  EXPECT_GT(expected, 1000U);
+  EXPECT_NEAR(cells_of_the_wall(5.0), expected, 5.0);
 }
 
 TEST(Mapper, AMergedPlaneNamesTheOnesItHoldsAndTheOldestIdLivesOn) {

@@ -66,7 +66,7 @@ Matrix3d covariance_of_looks(const std::vector<double>& times_s, const PoseError
     evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(),
                  looking_down(0.0, 0.0, 2.0, time_s), config);
   }
-  return evidence.covariance(fit_of(points), Vector3d::Zero(), config);
+  return evidence.covariance(fit_of(points), Vector3d::Zero(), configured_covariance(config));
 }
 
 TEST(PoseEvidence, OneScanIsAsWrongAsItsPose) {
@@ -90,53 +90,67 @@ TEST(PoseEvidence, TwentyScansOfOneLookAreHardlyMoreThanOne) {
   EXPECT_GT(covariance_of_looks(times_s, errors(0.01, 0.0, 10.0))(2, 2), 0.95e-4);
 }
 
-TEST(PoseEvidence, IsTheScatterOfFitsWithWanderingPoses) {
-  // A walk along a strip, its poses disturbed as a whole, point by point; the plane fitted to all of the points.
-  constexpr int kScans = 40;
-  constexpr int kTrials = 600;
-  constexpr double kStepS = 0.5;
-  const PoseErrorConfig config = errors(0.004, 0.002, 3.0);
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> normal;
+/// A walk along a strip.
+struct Walk {
+  static constexpr double kStepS = 0.5;
+  std::vector<ScanPose> scans;
+  std::vector<std::vector<Vector3d>> seen;  ///< by scan
+  std::vector<Vector3d> all;
+};
+Walk walk(int steps) {
+  Walk walk;
+  for (int k = 0; k < steps; ++k) {
+    const double x_m = 0.08 * k;
+    walk.scans.push_back(looking_down(x_m - 1.0, 0.3, 2.0 + 0.01 * k, Walk::kStepS * k));
+    walk.seen.push_back(patch(x_m, 0.0));
+    walk.all.insert(walk.all.end(), walk.seen.back().begin(), walk.seen.back().end());
+  }
+  return walk;
+}
+
+Matrix3d stated_covariance(const Walk& walk, const PlaneFit& fit, const PoseErrorConfig& config) {
   const Vector3d origin_m(0.7, -0.4, 0.0);
   PoseEvidence evidence;
-  std::vector<ScanPose> scans;
-  std::vector<std::vector<Vector3d>> seen;
-  std::vector<Vector3d> all;
-  for (int k = 0; k < kScans; ++k) {
-    const double x_m = 0.08 * k;
-    scans.push_back(looking_down(x_m - 1.0, 0.3, 2.0 + 0.01 * k, kStepS * k));
-    seen.push_back(patch(x_m, 0.0));
-    all.insert(all.end(), seen.back().begin(), seen.back().end());
-    evidence.add(moments_of(seen.back(), origin_m), Vector3d::UnitZ(), origin_m, scans.back(), config);
+  for (std::size_t k = 0; k < walk.scans.size(); ++k) {
+    evidence.add(moments_of(walk.seen[k], origin_m), Vector3d::UnitZ(), origin_m, walk.scans[k], config);
   }
-  const PlaneFit fit = fit_of(all);
-  const Matrix3d stated = evidence.covariance(fit, origin_m, config);
+  return evidence.covariance(fit, origin_m, configured_covariance(config));
+}
 
+/// The scans' poses are disturbed as wholes, point by point, again and again, and the plane is fitted to all points.
+Matrix3d scatter_of_fits(const Walk& walk, const PlaneFit& fit, const PoseErrorConfig& config) {
+  constexpr int kTrials = 600;
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
   Matrix3d equations = Matrix3d::Zero();
   const auto row = [&](const Vector3d& p) {
     return Vector3d(p.y() - fit.centroid_m.y(), p.x() - fit.centroid_m.x(), 1.0);
   };
-  for (const Vector3d& p : all) equations += row(p) * row(p).transpose();
+  for (const Vector3d& p : walk.all) equations += row(p) * row(p).transpose();
   Matrix3d scatter = Matrix3d::Zero();
-  const double kept = std::exp(-kStepS / config.correlation_s);
+  const double kept = std::exp(-Walk::kStepS / config.correlation_s);
   for (int trial = 0; trial < kTrials; ++trial) {
     Eigen::Matrix<double, 6, 1> state;
     for (double& value : state) value = normal(random);
     Vector3d heights = Vector3d::Zero();
-    for (std::size_t k = 0; k < scans.size(); ++k) {
-      const Isometry3d& T = scans[k].T_world_sensor;
-      const Vector3d rotation = config.sigma_rad * state.tail<3>();
+    for (std::size_t k = 0; k < walk.scans.size(); ++k) {
+      const Isometry3d& T = walk.scans[k].T_world_sensor;
+      const Eigen::Matrix<double, 6, 1> x = cholesky_factor(walk.scans[k].covariance_or(config)) * state;
+      const Vector3d rotation = x.tail<3>();
       Isometry3d error = Isometry3d::Identity();
-      error.translation() = config.sigma_m * state.head<3>();
+      error.translation() = x.head<3>();
       error.linear() = Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix();
       const Isometry3d disturbed = T * error * T.inverse();
-      for (const Vector3d& p : seen[k]) heights += row(p) * (disturbed * p).z();
+      for (const Vector3d& p : walk.seen[k]) heights += row(p) * (disturbed * p).z();
       for (double& value : state) value = kept * value + std::sqrt(1.0 - kept * kept) * normal(random);
     }
     const Vector3d estimate = equations.inverse() * heights;
     scatter += estimate * estimate.transpose() / kTrials;
   }
+  return scatter;
+}
+
+void expect_same_covariance(const Matrix3d& stated, const Matrix3d& scatter) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(stated(i, i) / scatter(i, i)), 1.0, 0.1) << i;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
@@ -144,6 +158,73 @@ TEST(PoseEvidence, IsTheScatterOfFitsWithWanderingPoses) {
                 scatter(i, j) / std::sqrt(scatter(i, i) * scatter(j, j)), 0.12)
         << i << j;
   }
+}
+
+TEST(PoseEvidence, IsTheScatterOfFitsWithWanderingPoses) {
+  const PoseErrorConfig config = errors(0.004, 0.002, 3.0);
+  const Walk strip = walk(40);
+  const PlaneFit fit = fit_of(strip.all);
+  expect_same_covariance(stated_covariance(strip, fit, config), scatter_of_fits(strip, fit, config));
+}
+
+TEST(PoseEvidence, IsTheScatterOfFitsWhereEachPoseHasACovarianceOfItsOwn) {
+  // From one covariance to another that is five times as large, all errors correlated, some scans without.
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  PoseCovariance first;
+  PoseCovariance last;
+  for (double& value : first.reshaped()) value = 0.001 * normal(random);
+  for (double& value : last.reshaped()) value = 0.005 * normal(random);
+  Walk strip = walk(40);
+  for (std::size_t k = 0; k < strip.scans.size(); ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(strip.scans.size());
+    if (k % 7 == 3) continue;
+    strip.scans[k].covariance = (1.0 - share) * first * first.transpose() + share * last * last.transpose();
+  }
+  const PoseErrorConfig config = errors(0.004, 0.002, 3.0);
+  const PlaneFit fit = fit_of(strip.all);
+  const Matrix3d stated = stated_covariance(strip, fit, config);
+  expect_same_covariance(stated, scatter_of_fits(strip, fit, config));
+  Walk without = walk(40);
+  EXPECT_GT(stated(2, 2), 1.5 * stated_covariance(without, fit, config)(2, 2)) << "else this shows nothing";
+}
+
+TEST(PoseEvidence, AScanIsAsWrongAsItSaysOfItself) {
+  // 3 mm along the sensor's z, which points down, and 2 mrad about its x, which is that of the world, correlated by
+  // 1/2: a plane that is seen too low rises with y.
+  ScanPose scan = looking_down(0.0, 0.0, 2.0, 1.0);
+  PoseCovariance x = PoseCovariance::Zero();
+  x(2, 2) = 9e-6;
+  x(3, 3) = 4e-6;
+  x(2, 3) = x(3, 2) = 3e-6;
+  scan.covariance = x;
+  const auto points = patch(0.0, 0.0);
+  PoseEvidence evidence;
+  evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(), scan, errors(1.0, 1.0, 1.0));
+  const Matrix3d c = evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero());
+  Matrix3d expected;
+  expected << 4e-6, 0.0, -3e-6,  //
+      0.0, 0.0, 0.0,             //
+      -3e-6, 0.0, 9e-6;
+  EXPECT_TRUE(c.isApprox(expected, 1e-9)) << c;
+}
+
+TEST(PoseEvidence, ScansOfUnequalErrorsShareThemInProportion) {
+  const double half_s = 10.0 * std::log(2.0);  // then exp(-dt / 10 s) = 1/2
+  const auto variance_m2 = [&](const std::vector<double>& sigmas_m) {
+    const auto points = patch(0.0, 0.0);
+    PoseEvidence evidence;
+    for (std::size_t k = 0; k < sigmas_m.size(); ++k) {
+      ScanPose scan = looking_down(0.0, 0.0, 2.0, half_s * static_cast<double>(k));
+      scan.covariance = configured_covariance(errors(sigmas_m[k], 0.0, 0.0));
+      evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(), scan,
+                   errors(0.0, 0.0, 10.0));
+    }
+    return evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero())(2, 2);
+  };
+  EXPECT_NEAR(variance_m2({0.01, 0.02}), 1.75e-4, 1e-9);  // 1/4 (1 + 4 + 2 * 1/2 * 1 * 2) square centimetres
+  EXPECT_NEAR(variance_m2({0.01, 0.02, 0.03}), 23.5e-4 / 9.0, 1e-9);  // 1/9 (14 + 2 (1/2 * 2 + 1/2 * 6 + 1/4 * 3))
+  EXPECT_NEAR(variance_m2({0.01, 0.0}), 0.25e-4, 1e-9);               // an exact one beside it halves the error
 }
 
 TEST(PoseEvidence, HalvesThatWereSeenTogetherAreNoSurerThanTheWhole) {
@@ -158,16 +239,17 @@ TEST(PoseEvidence, HalvesThatWereSeenTogetherAreNoSurerThanTheWhole) {
   }
   auto all = patch(0.0, 0.0);
   const auto more = patch(2.0, 0.0);
-  const double of_one_half = left.covariance(fit_of(all), Vector3d::Zero(), config)(2, 2);
+  const PoseCovariance x = configured_covariance(config);
+  const double of_one_half = left.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
   all.insert(all.end(), more.begin(), more.end());
   left.add(right, other_origin_m, config);
-  const double of_both = left.covariance(fit_of(all), Vector3d::Zero(), config)(2, 2);
+  const double of_both = left.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
   EXPECT_NEAR(of_both, of_one_half, 0.05 * of_one_half);
 }
 
 TEST(PoseEvidence, WithoutEvidenceAPlaneIsAsWrongAsOneScan) {
-  const PoseErrorConfig config = errors(0.01, 0.02, 1.0);
-  const Matrix3d c = PoseEvidence().covariance(fit_of(patch(0.0, 0.0)), Vector3d::Zero(), config);
+  const PoseCovariance x = configured_covariance(errors(0.01, 0.02, 1.0));
+  const Matrix3d c = PoseEvidence().covariance(fit_of(patch(0.0, 0.0)), Vector3d::Zero(), x);
   EXPECT_TRUE(c.isApprox(Vector3d(4e-4, 4e-4, 1e-4).asDiagonal().toDenseMatrix(), 1e-12));
 }
 

@@ -176,24 +176,24 @@ void visit_fields(Config& c, Visit&& visit) {
 }
 
 /// How wrong the poses of scans may be: a first-order Gauss-Markov process along and about each axis of the sensor. All
-/// 0: poses are exact, as the paper assumes.
+/// 0: poses are exact, as the paper assumes. A scan that brings the covariance of its own pose is taken at its word;
+/// how long its error lasts is said here in any case.
 struct PoseErrorConfig {
   double sigma_m = 0.0;
   double sigma_rad = 0.0;
   double correlation_s = 0.0;
 
   bool any() const { return sigma_m > 0.0 || sigma_rad > 0.0; }
-  /// Variance along any direction that these errors give a point at a usual distance.
-  double point_variance_m2() const {
-    constexpr double kUsualRangeM = 2.5;
-    return sigma_m * sigma_m + kUsualRangeM * kUsualRangeM * sigma_rad * sigma_rad;
-  }
 };
 
 template <MaybeConst<PoseErrorConfig> Config, class Visit>
 void visit_fields(Config& c, Visit&& visit) {
-  visit(FieldInfo{"sigma_m", "standard error of a pose's position along each axis; 0: exact", 0.0, 10.0}, c.sigma_m);
-  visit(FieldInfo{"sigma_rad", "standard error of a pose's rotation about each axis; 0: exact", 0.0, 1.0}, c.sigma_rad);
+  visit(FieldInfo{"sigma_m", "standard error of a position along each axis, for poses that state none; 0: exact", 0.0,
+                  10.0},
+        c.sigma_m);
+  visit(FieldInfo{"sigma_rad", "standard error of a rotation about each axis, for poses that state none; 0: exact", 0.0,
+                  1.0},
+        c.sigma_rad);
   visit(FieldInfo{"correlation_s", "time in which these errors change; 0: each pose errs on its own", 0.0, 3600.0},
         c.correlation_s);
 }

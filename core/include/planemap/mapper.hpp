@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <planemap/config.hpp>
+#include <planemap/pose_covariance.hpp>
 #include <planemap/scan.hpp>
 #include <planemap/snapshot.hpp>
 
@@ -47,9 +49,11 @@ class Mapper {
   Mapper& operator=(Mapper&&) noexcept;
 
   /// Maps one registered scan (paper, Fig. 3).
-  /// @param T_world_sensor  takes sensor coordinates to world coordinates
-  /// @param observer        may be nullptr
-  ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer = nullptr);
+  /// @param T_world_sensor   takes sensor coordinates to world coordinates
+  /// @param observer         may be nullptr
+  /// @param pose_covariance  of T_world_sensor, positive semi-definite; empty: config.pose_error
+  ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer = nullptr,
+                       const std::optional<PoseCovariance>& pose_covariance = std::nullopt);
 
   /// The map as it is now; costs what changed since the last call.
   std::shared_ptr<const MapSnapshot> snapshot(StageObserver* observer = nullptr);

@@ -114,13 +114,17 @@ class PlaneMap {
   void bridge(UncertainGrid& grid, GlobalReport& report);
   PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const;
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
+  void take_pose(const ScanPose& scan);
   void note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan);
   PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;
 
   GridConfig grid_config_;
   PlaneConfig config_;
   PoseErrorConfig pose_error_;
-  double pose_variance_m2_;  ///< what a pose's error does to a point's distance to its plane
+  bool poses_err_;            ///< as configured, or as a scan said of its own pose
+  PoseCovariance last_pose_;  ///< covariance of the newest scan's pose
+  double pose_variance_m2_;   ///< what a pose's error does to a point's distance to its plane: mean over the scans
+  std::int64_t scans_ = 0;
   double max_angle_rad_;
   double core_cosine_;
   std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed

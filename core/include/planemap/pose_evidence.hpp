@@ -3,27 +3,35 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <planemap/config.hpp>
 #include <planemap/moments.hpp>
 #include <planemap/plane_statistics.hpp>
+#include <planemap/pose_covariance.hpp>
 
 namespace planemap {
 
 /// One scan's place in space and time.
 struct ScanPose {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
-  std::int64_t utime = 0;  ///< microseconds
+  std::int64_t utime = 0;                      ///< microseconds
+  std::optional<PoseCovariance> covariance{};  ///< of T_world_sensor; empty: as configured
+
+  PoseCovariance covariance_or(const PoseErrorConfig& config) const {
+    return covariance ? *covariance : configured_covariance(config);
+  }
 };
 
 /// What the errors of the poses make of a plane's parameters.
 ///
 /// All points of a scan share its pose's error x_k (translation and small rotation in the sensor frame, 6 numbers), and
-/// successive scans share some of theirs: the errors are taken for a first-order Gauss-Markov process, so those of
-/// scans dt apart correlate by exp(-dt / correlation_s). An error moves a point's distance to the plane by g(p) . x_k,
-/// which is affine in the point: g(p) = G_k a, a = (p - origin, 1). The least-squares plane then moves by A^-1 sum_k
-/// B_k x_k with A = sum_k M_k, B_k = M_k G_k^T, M_k = sum over the scan's points of w a a^T, and has the covariance
-/// A^-1 S A^-1, S = sum_k sum_l rho_kl B_k X B_l^T, X the covariance of one pose. S grows with each scan by a
-/// recursion, since rho is a product over the times between: it is right at any moment and costs the same each time.
+/// successive scans share some of theirs. With X_k = L_k L_k^T the covariance of the scan's pose (Cholesky), x_k = L_k
+/// z_k, where z is six first-order Gauss-Markov processes of unit variance: the errors of scans dt apart have the
+/// covariance rho_kl L_k L_l^T, rho_kl = exp(-dt / correlation_s). An error moves a point's distance to the plane by
+/// g(p) . x_k, which is affine in the point: g(p) = G_k a, a = (p - origin, 1). The least-squares plane then moves by
+/// A^-1 sum_k B_k z_k with A = sum_k M_k, B_k = M_k G_k^T L_k, M_k = sum over the scan's points of w a a^T, and has the
+/// covariance A^-1 S A^-1, S = sum_k sum_l rho_kl B_k B_l^T. S grows with each scan by a recursion, since rho is a
+/// product over the times between: it is right at any moment and costs the same each time.
 class PoseEvidence {
  public:
   /// Adds what one scan saw of the plane. Scans come in the order in which they are mapped.
@@ -36,9 +44,10 @@ class PoseEvidence {
   /// @param shift_m  the other's origin minus ours
   void add(const PoseEvidence& other, const Eigen::Vector3d& shift_m, const PoseErrorConfig& config);
 
-  /// Covariance of (tilt_1, tilt_2, offset at the centroid) of a fit, about its tangents; radians and metres. Where the
-  /// evidence spans no plane: that of a single scan.
-  Eigen::Matrix3d covariance(const PlaneFit& fit, const Eigen::Vector3d& origin_m, const PoseErrorConfig& config) const;
+  /// Covariance of (tilt_1, tilt_2, offset at the centroid) of a fit, about its tangents; radians and metres.
+  /// @param of_one_scan  where the evidence spans no plane, it is taken to be as wrong as a scan of this pose
+  Eigen::Matrix3d covariance(const PlaneFit& fit, const Eigen::Vector3d& origin_m,
+                             const PoseCovariance& of_one_scan) const;
 
  private:
   using Matrix46 = Eigen::Matrix<double, 4, 6>;
@@ -47,7 +56,7 @@ class PoseEvidence {
 
   Eigen::Matrix4d normal_equations_ = Eigen::Matrix4d::Zero();  ///< A
   Eigen::Matrix4d spread_ = Eigen::Matrix4d::Zero();            ///< S
-  Matrix46 carried_ = Matrix46::Zero();                         ///< sum of B_k rho(now, k): what the next scan shares
+  Matrix46 carried_ = Matrix46::Zero();                         ///< sum of rho(now, k) B_k: what the next scan shares
   std::int64_t utime_ = 0;                                      ///< that carried_ stands for
 };
 
