@@ -61,8 +61,12 @@ int decode_all(const Bytes& bytes) {
 }
 
 std::vector<Bytes> good_messages() {
-  return {encoded(wall_message(5, 1)), encoded(zipped(wall_message(5, 1))), encoded(three_points_message(5, 1)),
-          encoded(pose_message(5)), encoded(request_message(1))};
+  return {encoded(wall_message(5, 1)),
+          encoded(zipped(wall_message(5, 1))),
+          encoded(three_points_message(5, 1)),
+          encoded(pose_message(5)),
+          encoded(pose_cov_message(5, 1.0, 0.01, 0.002)),
+          encoded(request_message(1))};
 }
 
 void put_i32(Bytes& bytes, std::size_t at, std::int32_t value) {
@@ -99,7 +103,7 @@ TEST(HostileBytes, RandomFlipsTakeNoMemoryBeyondTheMessage) {
       ++decoded;
     }
   }
-  EXPECT_EQ(decoded, 20000);
+  EXPECT_EQ(decoded, 24000);
 }
 
 TEST(HostileBytes, CountsOfEveryKindAreRefusedBeforeMemoryIsTaken) {
@@ -118,6 +122,30 @@ TEST(HostileBytes, CountsOfEveryKindAreRefusedBeforeMemoryIsTaken) {
       }
     }
   }
+  EXPECT_GT(refused, 500);
+}
+
+TEST(HostileBytes, NoFlipMakesACovarianceThatIsNone) {
+  std::mt19937_64 random(13);
+  const Bytes message = encoded(pose_cov_message(5, 1.0, 0.01, 0.002));
+  int taken = 0;
+  int refused = 0;
+  for (int round = 0; round < 20000; ++round) {
+    Bytes bytes = message;
+    for (std::uint64_t flips = 1 + random() % 4; flips > 0; --flips) {
+      bytes[8 + random() % (bytes.size() - 8)] ^= static_cast<std::uint8_t>(1U << (random() % 8));
+    }
+    const auto pose = decode_pose(bytes);
+    ++(pose ? taken : refused);
+    if (!pose || !pose->covariance) continue;
+    const PoseCovariance& x = *pose->covariance;
+    ASSERT_TRUE(x.allFinite());
+    const PoseCovariance factor = cholesky_factor(x);
+    ASSERT_TRUE(factor.allFinite());
+    ASSERT_TRUE((factor * factor.transpose()).isApprox(x, 1e-6)) << x;
+    ASSERT_LE(x.diagonal().maxCoeff(), 100.1);
+  }
+  EXPECT_GT(taken, 500);
   EXPECT_GT(refused, 500);
 }
 

@@ -189,6 +189,46 @@ TEST(ScanIntake, PosesAreCountedByWhatBecameOfThem) {
   EXPECT_EQ(bench.counters.value("poses.rejected.quaternion"), 1);
 }
 
+TEST(ScanIntake, PosesThatStateTheirCovarianceAreCounted) {
+  Bench bench;
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 0.0);
+  bench.intake.on_message("POSE", encoded(pose_cov_message(kSecond, 1.5, 0.01, 0.002)), 0.0);
+  bench.intake.on_message("POSE", encoded(pose_message(kSecond + 100000, 1.5)), 0.0);
+  bench.intake.on_message("POSE", encoded(pose_cov_message(kSecond + 200000, 1.5, 0.0, 0.0)), 0.0);  // states none
+  EXPECT_EQ(bench.counters.value("poses.received"), 3);
+  EXPECT_EQ(bench.counters.value("poses.with_covariance"), 1);
+  ASSERT_EQ(bench.scans.size(), 1u);
+  EXPECT_EQ(bench.scans[0].T_world_sensor.translation().x(), 1.5);
+  EXPECT_NEAR(bench.scans[0].pose_covariance.value()(0, 0), 1e-4, 1e-15);
+  EXPECT_NEAR(bench.scans[0].pose_covariance.value()(3, 3), 4e-6, 1e-15);
+}
+
+TEST(ScanIntake, ItIsSaidOnceThatErrorsOfPosesLastForNoTime) {
+  for (const double correlation_s : {0.0, 2.0}) {
+    ServiceConfig config;
+    config.pose.error.correlation_s = correlation_s;
+    Bench bench(config);
+    for (int i = 0; i < 3; ++i) {
+      bench.intake.on_message("POSE", encoded(pose_cov_message(kSecond + i * 100000, 0.0, 0.01, 0.002)), 100.0 * i);
+    }
+    ASSERT_EQ(bench.warnings.size(), correlation_s > 0.0 ? 0u : 1u);
+    if (!bench.warnings.empty()) {
+      EXPECT_NE(bench.warnings[0].find("pose.correlation_s = 0"), std::string::npos);
+    }
+  }
+}
+
+TEST(ScanIntake, APoseThatIsTooUncertainIsTheReasonForBeingIdle) {
+  Bench bench;
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 100.0);
+  bench.intake.on_message("POSE", encoded(pose_cov_message(kSecond, 0.0, 1000.0, 0.002)), 100.0);
+  EXPECT_EQ(bench.counters.value("poses.rejected.uncertain"), 1);
+  EXPECT_EQ(
+      idle_reason(bench.intake.facts(), MapperFacts{}, 101.0),
+      "POSE: rigid_body_pose_cov_t: the pose may be off by 1e+03 m and 0.002 rad (one sigma; up to 10 m and 1 rad "
+      "are mapped)");
+}
+
 TEST(ScanIntake, AShortLogMayBeReplayedInALoop) {
   Bench bench;
   for (int run = 0; run < 3; ++run) {

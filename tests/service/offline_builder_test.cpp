@@ -95,6 +95,42 @@ TEST(OfflineBuilder, AJumpBeginsANewMapWhereItIsToldTo) {
   EXPECT_EQ(first->snapshot()->planes()[0]->covariance, second->snapshot()->planes()[0]->covariance);
 }
 
+/// A wall from a log, and how sure its plane is.
+template <class PoseMessage>
+PlaneRecord wall_of_log(const PoseErrorConfig& errors, const PoseMessage& pose_at) {
+  ServiceConfig config;
+  config.pose.error = config.mapper.pose_error = errors;
+  OfflineBuilder builder(config, 5);
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t utime = kSecond + i * 66667;
+    builder.add_event("POSE", encoded(pose_at(utime - 20000)));
+    builder.add_event("PLANEMAP_SCAN", encoded(wall_message(utime, i)));
+  }
+  builder.finish();
+  const auto snapshot = builder.snapshot();
+  EXPECT_EQ(snapshot->planes().size(), 1u);
+  return snapshot->planes().empty() ? PlaneRecord{} : *snapshot->planes()[0];
+}
+
+TEST(OfflineBuilder, PlanesAreAsUncertainAsThePosesSay) {
+  PoseErrorConfig errors;
+  errors.correlation_s = 1.0;
+  const auto plain = [](std::int64_t utime) { return pose_message(utime); };
+  const auto stating = [](std::int64_t utime) { return pose_cov_message(utime, 0.0, 0.004, 0.002); };
+  const PlaneRecord exact = wall_of_log(errors, plain);
+  const PlaneRecord stated = wall_of_log(errors, stating);
+  errors.sigma_m = 0.004;
+  errors.sigma_rad = 0.002;
+  const PlaneRecord configured = wall_of_log(errors, plain);
+  errors.sigma_m = 0.1;  // for poses that state none
+  const PlaneRecord stated_beside = wall_of_log(errors, stating);
+  EXPECT_TRUE(stated.covariance.isApprox(configured.covariance, 1e-9)) << stated.covariance << configured.covariance;
+  EXPECT_TRUE(stated.covariance.isApprox(stated_beside.covariance, 1e-9));
+  // 20 scans in 1.3 s, of errors that last for 1 s, are hardly more than one or two.
+  EXPECT_GT(std::sqrt(stated.covariance(3, 3)), 0.002);
+  EXPECT_LT(std::sqrt(exact.covariance(3, 3)), 0.0005);
+}
+
 TEST(OfflineBuilder, TheSameCallsGiveTheSameMap) {
   const auto build = [] {
     auto builder = std::make_unique<OfflineBuilder>(ServiceConfig{}, 5);

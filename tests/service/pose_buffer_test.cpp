@@ -36,6 +36,57 @@ TEST(PoseBuffer, TakesTheShortWayBetweenOppositeQuaternions) {
   EXPECT_NEAR(turn.angle(), 0.1, 1e-12);
 }
 
+TEST(PoseBuffer, CovariancesAreInterpolatedToo) {
+  PoseBuffer poses{PoseConfig{}};
+  auto a = pose_at(kSecond, 0.0);
+  auto b = pose_at(kSecond + 400000, 0.0);
+  a.covariance = PoseCovariance::Identity() * 4e-6;
+  b.covariance = PoseCovariance::Identity() * 16e-6;
+  (*b.covariance)(0, 5) = (*b.covariance)(5, 0) = 8e-6;
+  poses.insert(a);
+  poses.insert(b);
+  const auto at = [&](std::int64_t offset_us) { return poses.find(kSecond + offset_us).covariance.value(); };
+  PoseCovariance quarter = PoseCovariance::Identity() * 7e-6;
+  quarter(0, 5) = quarter(5, 0) = 2e-6;
+  EXPECT_TRUE(at(100000).isApprox(quarter, 1e-12)) << at(100000);
+  EXPECT_EQ(at(0), *a.covariance);
+  EXPECT_EQ(at(400000), *b.covariance);
+  EXPECT_EQ(at(400500), *b.covariance);  // near enough
+}
+
+TEST(PoseBuffer, ErrorsOfPositionKeepToTheWorldsAxesWhereTheBodyTurns) {
+  // Both poses are unsure along the world's x alone; the body turns from yaw 0 to 0.6.
+  PoseBuffer poses{PoseConfig{}};
+  auto a = pose_at(kSecond, 0.0, 0.0);
+  auto b = pose_at(kSecond + 400000, 0.0, 0.6);
+  for (auto* pose : {&a, &b}) {
+    const Eigen::Vector3d x_body = pose->q_world_body.conjugate() * Eigen::Vector3d::UnitX();
+    pose->covariance = PoseCovariance::Zero();
+    pose->covariance->topLeftCorner<3, 3>() = 9e-6 * x_body * x_body.transpose();
+    poses.insert(*pose);
+  }
+  const auto pose = poses.find(kSecond + 100000);
+  const Eigen::Matrix3d R = pose.T_world_body.linear();
+  const Eigen::Matrix3d in_world = R * pose.covariance.value().topLeftCorner<3, 3>() * R.transpose();
+  EXPECT_TRUE(in_world.isApprox(Eigen::Vector3d(9e-6, 0.0, 0.0).asDiagonal().toDenseMatrix(), 1e-12)) << in_world;
+}
+
+TEST(PoseBuffer, WhereOnePoseStatesNoCovarianceThatOfTheOtherStandsForBoth) {
+  for (const bool first : {true, false}) {
+    PoseBuffer poses{PoseConfig{}};
+    auto a = pose_at(kSecond, 0.0);
+    auto b = pose_at(kSecond + 400000, 0.0);
+    (first ? a : b).covariance = PoseCovariance::Identity();
+    poses.insert(a);
+    poses.insert(b);
+    EXPECT_TRUE(poses.find(kSecond + 100000).covariance.value().isApprox(PoseCovariance::Identity(), 1e-12));
+  }
+  PoseBuffer poses{PoseConfig{}};
+  poses.insert(pose_at(kSecond, 0.0));
+  poses.insert(pose_at(kSecond + 400000, 0.0));
+  EXPECT_FALSE(poses.find(kSecond + 100000).covariance);
+}
+
 TEST(PoseBuffer, SaysWhyThereIsNoPose) {
   PoseBuffer poses{PoseConfig{}};
   EXPECT_EQ(poses.find(kSecond).match, PoseMatch::kNoneYet);

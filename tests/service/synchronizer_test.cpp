@@ -62,6 +62,28 @@ TEST(Synchronizer, AppliesTheSensorsPlaceOnTheBody) {
   ASSERT_EQ(results.ready.size(), 1u);
   const Eigen::Vector3d ahead_m = results.ready[0].T_world_sensor * Eigen::Vector3d(0.0, 0.0, 2.0);
   EXPECT_NEAR((ahead_m - Eigen::Vector3d(3.0, 2.2, 1.0)).norm(), 0.0, 1e-12);
+  EXPECT_FALSE(results.ready[0].pose_covariance);
+}
+
+TEST(Synchronizer, TheBodysCovarianceBecomesTheSensors) {
+  ServiceConfig config;
+  config.inputs[0].translation_m = {2.0, 0.0, 0.0};
+  config.inputs[0].rotation_wxyz = {0.5, -0.5, 0.5, -0.5};  // as above
+  Synchronizer sync(config);
+  auto pose = pose_at(kSecond, 0.0);
+  pose.covariance = PoseCovariance::Zero();
+  (*pose.covariance)(5, 5) = 1e-6;  // yaw, about the body's z
+  sync.add_pose(0, pose);
+  sync.add_scan(0, scan_at(kSecond), 0.0);
+  const auto results = sync.take_ready(0.0);
+  ASSERT_EQ(results.ready.size(), 1u);
+  // The body's z is the sensor's -y; 2 m ahead the yaw r moves the sensor by 2 r to the left, along its -x.
+  PoseCovariance expected = PoseCovariance::Zero();
+  expected(4, 4) = 1e-6;
+  expected(0, 0) = 4e-6;
+  expected(0, 4) = expected(4, 0) = 2e-6;
+  const PoseCovariance stated = results.ready[0].pose_covariance.value();
+  EXPECT_TRUE(stated.isApprox(expected, 1e-12)) << stated;
 }
 
 TEST(Synchronizer, PoseAtTheScansTimeNeedsNoWait) {

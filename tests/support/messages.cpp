@@ -88,6 +88,19 @@ bot_core::pose_t pose_message(std::int64_t utime, double x_m) {
   return message;
 }
 
+pronto::rigid_body_pose_cov_t pose_cov_message(std::int64_t utime, double x_m, double sigma_m, double sigma_rad) {
+  pronto::rigid_body_pose_cov_t message{};
+  message.utime = utime;
+  message.quat[0] = 1.0;
+  message.xyz_pos[0] = x_m;
+  for (int i = 0; i < 6; ++i) {
+    const double sigma = i < 3 ? sigma_rad : sigma_m;
+    message.pose_cov[7 * i] = sigma * sigma;
+    message.active_indices[i] = 1;
+  }
+  return message;
+}
+
 planemap_lcm::request_t request_message(std::int16_t operation, std::int64_t request_id, std::int32_t page) {
   planemap_lcm::request_t message{};
   message.utime = 1;

@@ -6,6 +6,7 @@
 #include <planemap_lcm/depth_scan_t.hpp>
 #include <planemap_lcm/point_scan_t.hpp>
 #include <planemap_lcm/request_t.hpp>
+#include <pronto/rigid_body_pose_cov_t.hpp>
 #include <vector>
 
 namespace planemap {
@@ -44,6 +45,8 @@ planemap_lcm::point_scan_t three_points_message(std::int64_t utime, std::int32_t
 
 /// A pose without rotation.
 bot_core::pose_t pose_message(std::int64_t utime, double x_m = 0.0);
+/// The same with a covariance: standard errors along and about all axes.
+pronto::rigid_body_pose_cov_t pose_cov_message(std::int64_t utime, double x_m, double sigma_m, double sigma_rad);
 
 planemap_lcm::request_t request_message(std::int16_t operation, std::int64_t request_id = 7, std::int32_t page = -1);
 

@@ -74,6 +74,23 @@ std::vector<Bytes> bad_scans() {
   return bad;
 }
 
+void add_bad_covariances(std::vector<Bytes>& bad) {
+  const pronto::rigid_body_pose_cov_t good = pose_cov_message(kUtime, 0.0, 0.01, 0.002);
+  add_truncations(bad, encoded(good));
+  constexpr int kVariance = 21;    // of the position along x
+  constexpr int kCovariance = 22;  // of the positions along x and y, above the diagonal
+  for (const double number : {-1e-4, std::numeric_limits<double>::quiet_NaN(), 1e300}) {
+    for (const int at : {kVariance, kCovariance}) {
+      pronto::rigid_body_pose_cov_t pose = good;
+      pose.pose_cov[at] = number;
+      bad.push_back(encoded(pose));
+    }
+  }
+  pronto::rigid_body_pose_cov_t pose = good;
+  pose.active_indices[4] = 0;
+  bad.push_back(encoded(pose));
+}
+
 std::vector<Bytes> bad_poses() {
   std::mt19937 random(8);
   std::vector<Bytes> bad;
@@ -86,6 +103,7 @@ std::vector<Bytes> bad_poses() {
   pose = pose_message(kUtime);
   pose.pos[1] = std::numeric_limits<double>::quiet_NaN();
   bad.push_back(encoded(pose));
+  add_bad_covariances(bad);
   return bad;
 }
 

@@ -194,7 +194,8 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"sigma_rad", "standard error of a rotation about each axis, for poses that state none; 0: exact", 0.0,
                   1.0},
         c.sigma_rad);
-  visit(FieldInfo{"correlation_s", "time in which these errors change; 0: each pose errs on its own", 0.0, 3600.0},
+  visit(FieldInfo{"correlation_s",
+                  "time in which errors of poses change, stated ones too; 0: each pose errs on its own", 0.0, 3600.0},
         c.correlation_s);
 }
 

@@ -77,7 +77,9 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"name", "of the sensor, for logs and counters", 1, 64}, c.name);
   visit(FieldInfo{"channel", "of its scans: planemap_lcm.depth_scan_t or point_scan_t", 1, kMaxChannelChars},
         c.channel);
-  visit(FieldInfo{"pose_channel", "of the body's poses: bot_core.pose_t", 1, kMaxChannelChars}, c.pose_channel);
+  visit(FieldInfo{"pose_channel", "of the body's poses: bot_core.pose_t or pronto.rigid_body_pose_cov_t", 1,
+                  kMaxChannelChars},
+        c.pose_channel);
   visit(FieldInfo{"translation_m", "where the sensor is in the body frame, x y z", 3, 3}, c.translation_m);
   visit(FieldInfo{"rotation_wxyz",
                   "unit quaternion, takes the sensor's axes (x right, y down, z forward) to the body's", 4, 4},

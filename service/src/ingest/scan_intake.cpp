@@ -21,6 +21,7 @@ ScanIntake::ScanIntake(const ServiceConfig& config, Counters& counters, Sink sin
       warn_(std::move(warn)),
       max_scan_bytes_(static_cast<std::size_t>(config.limits.image_bytes)),
       jump_resets_map_(config.pose.resets_map()),
+      pose_errors_last_(config.pose.error.correlation_s > 0.0),
       synchronizer_(config),
       repeats_(kWarnPeriodS) {
   for (std::size_t i = 0; i < config.inputs.size(); ++i) {
@@ -135,7 +136,10 @@ void ScanIntake::on_pose(std::size_t stream, const std::string& channel, std::sp
                          double host_s) {
   counters_.add("poses.received");
   const auto pose = decode_pose(message);
-  if (pose) return note_pose(stream, channel, synchronizer_.add_pose(stream, *pose), host_s);
+  if (pose) {
+    if (pose->covariance) note_covariance(channel);
+    return note_pose(stream, channel, synchronizer_.add_pose(stream, *pose), host_s);
+  }
   counters_.add("poses.rejected." + pose.error().reason);
   warn_rejection(channel, pose.error(), host_s);
   const std::lock_guard lock(facts_mutex_);
@@ -145,6 +149,15 @@ void ScanIntake::on_pose(std::size_t stream, const std::string& channel, std::sp
     facts_[i].last_pose_problem = last_problem_;
     facts_[i].last_pose_problem_host_s = host_s;
   }
+}
+
+void ScanIntake::note_covariance(const std::string& channel) {
+  counters_.add("poses.with_covariance");
+  if (std::exchange(said_that_errors_are_independent_, true) || pose_errors_last_) return;
+  warn_(fmt::format(
+      "the poses on {} state their covariance, but not how long an error lasts: with pose.correlation_s = 0 each pose "
+      "errs on its own, and the planes are taken for surer than they are",
+      channel));
 }
 
 void ScanIntake::note_pose(std::size_t stream, const std::string& channel, PoseInsert result, double host_s) {

@@ -63,6 +63,7 @@ class ScanIntake {
   void leave_out(std::size_t index, const char* reason, std::string message, double host_s);
   void count_filtered(Input& input, Scan& scan);
   void reject_scan(std::size_t index, const Rejection& rejection, double host_s);
+  void note_covariance(const std::string& channel);
   void note_pose(std::size_t stream, const std::string& channel, PoseInsert result, double host_s);
   void hand_on(SyncResults results, double host_s);
   void warn_once_in_a_while(const std::string& kind, const std::string& text, double host_s);
@@ -73,6 +74,8 @@ class ScanIntake {
   Warn warn_;
   std::size_t max_scan_bytes_;
   bool jump_resets_map_;
+  bool pose_errors_last_;  ///< pose.correlation_s is set
+  bool said_that_errors_are_independent_ = false;
   std::vector<Input> inputs_;
   Synchronizer synchronizer_;
   std::map<std::string, std::size_t, std::less<>> scan_channels_;  ///< to the input's number

@@ -100,7 +100,7 @@ void MappingService::map(const RegisteredScan& scan) {
   StageTimer timer;
   const double begin_s = steady_now_s();
   if (scan.map_number > map_number_) begin_new_map(scan.map_number);
-  const ScanReport report = mapper_.integrate(scan.scan, scan.T_world_sensor, &timer);
+  const ScanReport report = mapper_.integrate(scan.scan, scan.T_world_sensor, &timer, scan.pose_covariance);
   auto snapshot = mapper_.snapshot(&timer);
   const double end_s = steady_now_s();
   {

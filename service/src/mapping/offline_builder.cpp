@@ -1,6 +1,7 @@
 #include "mapping/offline_builder.hpp"
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "ingest/scan_intake.hpp"
@@ -23,7 +24,7 @@ class OfflineBuilder::Impl {
 
   ScanReport add_frame(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
     counters_.scan_received();
-    return map(scan, T_world_sensor);
+    return map(scan, T_world_sensor, std::nullopt);
   }
 
   void finish() { intake_.finish(); }
@@ -39,7 +40,7 @@ class OfflineBuilder::Impl {
 
   void map(const RegisteredScan& scan) {
     if (scan.map_number > map_number_) begin_new_map(scan.map_number);
-    map(scan.scan, scan.T_world_sensor);
+    map(scan.scan, scan.T_world_sensor, scan.pose_covariance);
   }
 
   void begin_new_map(std::uint64_t map_number) {
@@ -48,10 +49,11 @@ class OfflineBuilder::Impl {
     counters_.add("map.resets");
   }
 
-  ScanReport map(const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+  ScanReport map(const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+                 const std::optional<PoseCovariance>& pose_covariance) {
     timer_.reset();
     const auto begin = StageTimer::Clock::now();
-    const ScanReport report = mapper_.integrate(scan, T_world_sensor, &timer_);
+    const ScanReport report = mapper_.integrate(scan, T_world_sensor, &timer_, pose_covariance);
     const std::chrono::duration<double, std::milli> ms = StageTimer::Clock::now() - begin;
     counters_.scan_mapped(report.points);
     points_ += report.points;

@@ -25,9 +25,28 @@ PoseLookup not_found(PoseMatch why, double gap_s = 0.0) {
   return {why, Eigen::Isometry3d::Identity(), gap_s, 0};
 }
 
-Eigen::Isometry3d interpolate(const StampedPose& a, const StampedPose& b, std::int64_t utime) {
+/// A pose's covariance in terms of the axes of the body when it has turned to q_world_body: positions are interpolated
+/// along the world's axes, so their errors keep those; rotations along the body's own.
+std::optional<PoseCovariance> along_axes_of(const Eigen::Quaterniond& q_world_body, const StampedPose& pose) {
+  if (!pose.covariance) return std::nullopt;
+  PoseCovariance turn = PoseCovariance::Identity();
+  turn.topLeftCorner<3, 3>() = (q_world_body.conjugate() * pose.q_world_body).toRotationMatrix();
+  return turn * *pose.covariance * turn.transpose();
+}
+
+PoseLookup interpolate(const StampedPose& a, const StampedPose& b, std::int64_t utime, std::uint64_t jumps) {
   const double share = static_cast<double>(utime - a.utime) / static_cast<double>(b.utime - a.utime);
-  return to_isometry(a.p_world_m + share * (b.p_world_m - a.p_world_m), a.q_world_body.slerp(share, b.q_world_body));
+  const Eigen::Quaterniond q_world_body = a.q_world_body.slerp(share, b.q_world_body);
+  PoseLookup lookup{PoseMatch::kFound, to_isometry(a.p_world_m + share * (b.p_world_m - a.p_world_m), q_world_body),
+                    0.0, jumps};
+  const auto of_a = along_axes_of(q_world_body, a);
+  const auto of_b = along_axes_of(q_world_body, b);
+  if (of_a && of_b) {
+    lookup.covariance = (1.0 - share) * *of_a + share * *of_b;
+  } else {
+    lookup.covariance = of_a ? of_a : of_b;
+  }
+  return lookup;
 }
 
 }  // namespace
@@ -80,7 +99,7 @@ bool PoseBuffer::is_jump(const StampedPose& a, const StampedPose& b) const {
 }
 
 PoseLookup PoseBuffer::found(const Kept& pose) {
-  return {PoseMatch::kFound, to_isometry(pose.p_world_m, pose.q_world_body), 0.0, pose.jumps};
+  return {PoseMatch::kFound, to_isometry(pose.p_world_m, pose.q_world_body), 0.0, pose.jumps, pose.covariance};
 }
 
 PoseLookup PoseBuffer::find(std::int64_t utime) const {
@@ -98,9 +117,7 @@ PoseLookup PoseBuffer::find(std::int64_t utime) const {
   }
   const Kept& before = *std::prev(after);
   const bool has_gap = after->utime - before.utime > max_gap_us_;
-  if (!has_gap && !is_jump(before, *after)) {
-    return {PoseMatch::kFound, interpolate(before, *after, utime), 0.0, before.jumps};
-  }
+  if (!has_gap && !is_jump(before, *after)) return interpolate(before, *after, utime, before.jumps);
   const Kept& nearest = utime - before.utime <= after->utime - utime ? before : *after;
   if (std::abs(nearest.utime - utime) <= exact_us_) return found(nearest);
   const double gap_s = static_cast<double>(after->utime - before.utime) * 1e-6;

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
+#include <planemap/pose_covariance.hpp>
 
 #include "config/service_config.hpp"
 
@@ -14,6 +16,7 @@ struct StampedPose {
   std::int64_t utime = 0;                                            ///< microseconds
   Eigen::Vector3d p_world_m = Eigen::Vector3d::Zero();               ///< origin of the body
   Eigen::Quaterniond q_world_body = Eigen::Quaterniond::Identity();  ///< unit; takes body axes to world axes
+  std::optional<PoseCovariance> covariance{};                        ///< of T_world_body; empty: its source says none
 };
 
 /// What became of a pose that was inserted.
@@ -41,6 +44,7 @@ struct PoseLookup {
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();  ///< with kFound
   double gap_s = 0.0;                                              ///< with kGap: between the poses around it
   std::uint64_t jumps = 0;                                         ///< with kFound: jumps of these poses until then
+  std::optional<PoseCovariance> covariance{};                      ///< of T_world_body; empty: no pose states one
 };
 
 /// The poses of one channel by time. Bounded; not thread-safe.
@@ -50,7 +54,10 @@ class PoseBuffer {
 
   PoseInsert insert(const StampedPose& pose);
   /// The pose at a time: linear in position, spherical-linear in rotation between the poses around it; the nearest pose
-  /// where it is within exact_s and there is none on the other side to interpolate with.
+  /// where it is within exact_s and there is none on the other side to interpolate with. Covariances are interpolated
+  /// linearly: the error of the pose in between is that mean of two errors, so this is its covariance where the two
+  /// are one, and more than that where they are not, whatever they share. Where only one pose states its covariance, it
+  /// stands for both.
   PoseLookup find(std::int64_t utime) const;
 
   std::size_t size() const { return poses_.size(); }

@@ -165,8 +165,13 @@ void Synchronizer::hand_on(std::size_t index, const PoseLookup& lookup, SyncResu
   if (config_.resets_map() && lookup.jumps > stream.jumps && !map_is_empty_) ++map_number_;
   stream.jumps = std::max(stream.jumps, lookup.jumps);
   map_is_empty_ = false;
-  results.ready.push_back(
-      RegisteredScan{index, pop_front(input).scan, lookup.T_world_body * input.T_body_sensor, map_number_});
+  RegisteredScan ready;
+  ready.input = index;
+  ready.scan = pop_front(input).scan;
+  ready.T_world_sensor = lookup.T_world_body * input.T_body_sensor;
+  if (lookup.covariance) ready.pose_covariance = covariance_at_sensor(*lookup.covariance, input.T_body_sensor);
+  ready.map_number = map_number_;
+  results.ready.push_back(std::move(ready));
 }
 
 bool Synchronizer::has_expired(const Input& input, const Waiting& scan, double host_s) const {

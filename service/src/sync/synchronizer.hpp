@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
+#include <planemap/pose_covariance.hpp>
 #include <planemap/scan.hpp>
 #include <string>
 #include <vector>
@@ -18,6 +20,7 @@ struct RegisteredScan {
   std::size_t input = 0;  ///< number of the sensor in the configuration
   Scan scan;
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  std::optional<PoseCovariance> pose_covariance{};  ///< of T_world_sensor; empty: its poses state none
   /// Of the map that it belongs to: grows by one where a jump of the pose begins a new map (pose.jump: reset), and is
   /// never less than that of a scan that was handed on before.
   std::uint64_t map_number = 0;
