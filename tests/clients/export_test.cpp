@@ -67,6 +67,7 @@ ExportMap room() {
   map.planes.push_back(rectangle(2, corner_m + 2.5 * z, 3.0 * y, 4.0 * x, PlaneClass::kCeiling));
   map.planes.push_back(rectangle(3, corner_m, 2.5 * z, 4.0 * x, PlaneClass::kWall));
   map.planes.push_back(rectangle(5, corner_m + x + y + 0.7 * z, 1.2 * x, 0.8 * y, PlaneClass::kTable));
+  map.planes.back().coplanar = {2, 9};
   CellView cell{};
   cell.centre_m = {0.1, 1.0 / 3.0, -2.0};
   cell.sigma_m = {0.001, 0.002, 0.003};
@@ -105,7 +106,7 @@ TEST(PlanesJson, HoldsEveryMemberAndTheSameDoubles) {
   ASSERT_EQ(json["planes"].size(), 4u);
   const auto& plane = json["planes"][3];
   const PlaneRecord& record = map.planes[3].record;
-  EXPECT_EQ(plane.size(), 13u);
+  EXPECT_EQ(plane.size(), 14u);
   EXPECT_EQ(plane["id"], 5);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(plane["normal"][i].get<double>(), record.plane.normal()[i]);
   EXPECT_EQ(plane["d"].get<double>(), record.plane.d());
@@ -120,6 +121,8 @@ TEST(PlanesJson, HoldsEveryMemberAndTheSameDoubles) {
   EXPECT_EQ(plane["quality"].get<double>(), 1.0 / 3.0);
   EXPECT_EQ(plane["firstSeenUtime"], 1'000'000);
   EXPECT_EQ(plane["lastSeenUtime"], 9'007'199'254'740'991);
+  EXPECT_EQ(plane["coplanar"], (std::vector<int>{2, 9}));
+  EXPECT_EQ(json["planes"][0]["coplanar"], nlohmann::json::array());
   ASSERT_EQ(plane["polygons"].size(), 1u);
   EXPECT_TRUE(plane["polygons"][0]["holes"].empty());
   ASSERT_GE(plane["polygons"][0]["outer"].size(), 4u);
@@ -313,6 +316,32 @@ TEST(ExportMapOfAnAnswer, TakesEverythingAndFindsDown) {
   EXPECT_EQ(map->planes[0].outline.polygons[0].outer[2], Eigen::Vector2d(1, 1));
   ASSERT_EQ(map->cells.size(), 1u);
   EXPECT_FALSE(map->cells[0].normal);
+}
+
+TEST(ExportMapOfAnAnswer, CoplanarPlanesAreLinked) {
+  client::Map wire;
+  const auto add = [&](std::int64_t id, double x_m, double height_m, double area_m2) {
+    client::Plane plane;
+    plane.id = id;
+    plane.normal = {0, 0, 1};
+    plane.d = -height_m;
+    plane.centroid_m = {x_m, 0, height_m};
+    plane.area_m2 = area_m2;
+    wire.planes.push_back(plane);
+  };
+  add(2, 0.0, 0.7, 1.0);
+  add(3, 0.0, 0.0, 9.0);
+  add(5, 4.0, 0.705, 1.0);
+  add(8, 5.0, 0.702, 0.1);
+  const auto map = export_map_of(wire);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->planes[0].coplanar, std::vector<PlaneId>{5});
+  EXPECT_TRUE(map->planes[1].coplanar.empty());
+  EXPECT_EQ(map->planes[2].coplanar, std::vector<PlaneId>{2});
+  EXPECT_TRUE(map->planes[3].coplanar.empty()) << "too small";
+  const std::string table = plane_table(*map);
+  EXPECT_TRUE(std::regex_search(table, std::regex("\n +2  [^\n]* 5\n"))) << table;
+  EXPECT_TRUE(std::regex_search(table, std::regex("\n +3  [^\n]* -\n"))) << table;
 }
 
 TEST(ExportMapOfAnAnswer, APlaneWithoutDirectionFails) {

@@ -240,7 +240,7 @@ TEST(TruthFile, HoldsEverySurfaceInTheSchemaOfPlanes) {
     EXPECT_EQ(plane.at("polygons").size(), surface.pieces_m.size());
     const auto centroid = plane.at("centroid").get<std::vector<double>>();
     EXPECT_NEAR(surface.plane.signed_distance_m({centroid[0], centroid[1], centroid[2]}), 0.0, 1e-9);
-    for (const char* key : {"cellCount", "pointCount", "quality", "firstSeenUtime", "lastSeenUtime"}) {
+    for (const char* key : {"cellCount", "pointCount", "quality", "firstSeenUtime", "lastSeenUtime", "coplanar"}) {
       EXPECT_TRUE(plane.contains(key)) << key;
     }
   }

@@ -7,7 +7,7 @@
 namespace planemap::cli {
 
 /// The planes as a table for people, largest first: id, class, cells, points, area, normal and its standard error,
-/// distance from the world's origin and the standard error of the plane's offset at its centroid.
+/// distance from the world's origin, the standard error of the plane's offset at its centroid, and coplanar planes.
 std::string plane_table(const ExportMap& map);
 
 /// Standard error of where the plane is, at its centroid along its normal, metres.

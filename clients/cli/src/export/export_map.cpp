@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <planemap/classify.hpp>
+#include <planemap/coplanar.hpp>
 #include <utility>
 
 namespace planemap::cli {
@@ -28,6 +29,16 @@ void set_classes(std::vector<ExportPlane>& planes, const std::optional<Eigen::Ve
   }
   const std::vector<PlaneClass> classes = classify(surfaces, gravity);
   for (std::size_t i = 0; i < planes.size(); ++i) planes[i].plane_class = classes[i];
+}
+
+void set_links(std::vector<ExportPlane>& planes) {
+  std::vector<SizedPlane> sized;
+  sized.reserve(planes.size());
+  for (const ExportPlane& plane : planes) sized.push_back({&plane.record, plane.outline.area_m2});
+  CoplanarLinks links = coplanar_links(sized);
+  for (ExportPlane& plane : planes) {
+    if (const auto linked = links.find(plane.record.id); linked != links.end()) plane.coplanar = linked->second;
+  }
 }
 
 /// Down, as the level surfaces say; empty where there are none.
@@ -118,6 +129,7 @@ ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
     plane.outline = outline_of(record->plane, record->centroid_m, centres_m[record->id], snapshot.cell_size_m());
   }
   set_classes(map.planes, map.gravity);
+  set_links(map.planes);
   return map;
 }
 
@@ -132,6 +144,7 @@ Expected<ExportMap> export_map_of(const client::Map& wire) {
     map.planes.push_back(std::move(*plane));
   }
   map.gravity = gravity_of(map.planes);
+  set_links(map.planes);
   map.cells.reserve(wire.cells.size());
   std::transform(wire.cells.begin(), wire.cells.end(), std::back_inserter(map.cells), cell_of_wire);
   return map;

@@ -16,6 +16,7 @@ struct ExportPlane {
   PlaneRecord record;
   Outline outline;
   PlaneClass plane_class = PlaneClass::kOther;
+  std::vector<PlaneId> coplanar;  ///< other planes with the same parameters, as far as is known; ascending
 };
 
 /// What exporters and tables are made from, wherever the map is from.

@@ -45,7 +45,8 @@ Json json_of(const ExportPlane& plane) {
           {"class", name_of(plane.plane_class)},
           {"quality", record.quality},
           {"firstSeenUtime", record.first_seen_utime},
-          {"lastSeenUtime", record.last_seen_utime}};
+          {"lastSeenUtime", record.last_seen_utime},
+          {"coplanar", plane.coplanar}};
 }
 
 }  // namespace
