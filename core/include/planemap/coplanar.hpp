@@ -21,7 +21,8 @@ constexpr double kLeastLinkedAreaM2 = 0.25;
 /// reader would see of a difference: the distances between them at their centroids (at least 1 m apart: a nearer look
 /// shows no tilt) and the turn about the line through these. The three must be within the 95 % of what both covariances
 /// and 5 mm and 0.5 degrees allow, so that exact planes agree up to 1 cm, as where pieces are bridged. Where they are
-/// known worse than to 2 cm and 1.5 degrees nobody can tell, and the answer is no.
+/// known worse than to 2 cm and 1.5 degrees nobody can tell, and the answer is no. Errors that the two share, as those
+/// of the poses that saw both, are not known to be shared: they allow a difference that they did not make.
 bool are_coplanar(const PlaneRecord& a, const PlaneRecord& b);
 
 /// For each plane that has any: the other planes that are coplanar with it, ascending. A link goes both ways, but it is

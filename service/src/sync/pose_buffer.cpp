@@ -7,7 +7,7 @@
 namespace planemap::service {
 namespace {
 
-/// 10 kHz for 10 s; a flood of poses a microsecond apart must not fill the memory.
+/// 10 kHz for 10 s, 40 MB; a flood of poses a microsecond apart must not fill the memory.
 constexpr std::size_t kMaxPoses = 100000;
 
 std::int64_t to_us(double seconds) {
