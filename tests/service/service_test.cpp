@@ -116,6 +116,20 @@ TEST_F(ServiceTest, ScansBecomePlanesInDeltas) {
   EXPECT_EQ(counter("scans.waiting"), 0);
 }
 
+TEST_F(ServiceTest, PlanesAreAsUncertainAsThePosesSay) {
+  for (int i = 0; i < 5; ++i) {
+    const std::int64_t utime = 10 * kSecond + i * 33333;
+    send("POSE", encoded(pose_cov_message(utime, 0.0, 0.004, 0.002)));
+    send("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, i))));
+  }
+  ASSERT_TRUE(mapped(5));
+  EXPECT_EQ(counter("poses.with_covariance"), 5);
+  const auto snapshot = ask(request_message(request_t::OPERATION_SNAPSHOT, 41));
+  ASSERT_EQ(snapshot.at(0).n_planes, 1);
+  // Five poses that each err on their own by 4 mm towards the wall, which is right before the sensor.
+  EXPECT_NEAR(snapshot[0].planes[0].covariance[9], 16e-6 / 5, 0.2e-6);
+}
+
 TEST_F(ServiceTest, SnapshotAndCellsArriveWhole) {
   for (int i = 0; i < 3; ++i) send_wall(i);
   ASSERT_TRUE(mapped(3));
