@@ -77,18 +77,20 @@ void for_each_near_pair(const std::vector<const PlaneRecord*>& planes, Visit&& v
 
 bool are_coplanar(const PlaneRecord& a, const PlaneRecord& b) {
   if (a.plane.normal().dot(b.plane.normal()) <= 0.0) return false;
+  Eigen::Vector4d difference;
+  difference << a.plane.normal() - b.plane.normal(), a.plane.d() - b.plane.d();
+  const Eigen::Vector3d middle_m = 0.5 * (a.centroid_m + b.centroid_m);
+  // Half-way between the ends no covariance allows more, and here most pairs end.
+  if (std::abs(difference.dot(middle_m.homogeneous())) > kMaxOffsetM) return false;
   const Eigen::Vector3d normal = (a.plane.normal() + b.plane.normal()).normalized();
   Eigen::Vector3d along_m = b.centroid_m - a.centroid_m;
   along_m -= normal.dot(along_m) * normal;
   const double arm_m = along_m.norm();
   const Eigen::Vector3d along = arm_m > 1e-6 ? Eigen::Vector3d(along_m / arm_m) : normal.unitOrthogonal();
   const Eigen::Vector3d end_m = 0.5 * std::max(arm_m, kLeastArmM) * along;
-  const Eigen::Vector3d middle_m = 0.5 * (a.centroid_m + b.centroid_m);
   Eigen::Matrix<double, 3, 4> seen;  // of (n, d): distance at either end, turn about the line between
   seen << (middle_m - end_m).transpose(), 1.0, (middle_m + end_m).transpose(), 1.0, normal.cross(along).transpose(),
       0.0;
-  Eigen::Vector4d difference;
-  difference << a.plane.normal() - b.plane.normal(), a.plane.d() - b.plane.d();
   const Eigen::Vector3d error = seen * difference;
   Eigen::Matrix3d covariance = seen * (a.covariance + b.covariance) * seen.transpose();
   if (!(std::max(covariance(0, 0), covariance(1, 1)) <= kMaxOffsetSigmaM * kMaxOffsetSigmaM &&
