@@ -53,8 +53,10 @@ bool LocalPlaneExtractor::similar(const UncertainGrid& grid, CellRef ref, const 
                                 static_cast<double>(cell.deviation_rad)) >= squared_chord_) {
     return false;
   }
-  return !config_.offset_test ||
-         std::abs(plane.plane.signed_distance_m(grid.virtual_centre_m(ref))) < config_.cell_offset_m;
+  if (!config_.offset_test) return true;
+  if (std::abs(plane.plane.signed_distance_m(grid.virtual_centre_m(ref))) >= config_.cell_offset_m) return false;
+  return !config_.splits || plane.weight <= 0.0 ||
+         !is_other_surface(cell, grid.geometric_centre_m(ref), plane.plane, grid.cell_size_m());
 }
 
 std::optional<LocalPlane> LocalPlaneExtractor::grow(const UncertainGrid& grid, std::span<const CellChange> changes,

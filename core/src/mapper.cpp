@@ -90,11 +90,38 @@ class Mapper::Impl {
     const StageScope scope(observer, Stage::kAssign);
     report.points = assigner_.assign(grid_, scan, T_world_sensor);
     report.touched_cells = assigner_.changes().size();
-    for (const CellChange& change : assigner_.changes()) {
+    for (CellChange& change : assigner_.changes()) {
       planes_.detach(grid_, change.cell);
-      Cell& cell = grid_.writable(change.cell);
-      cell.add(change.added, cell.plane != kNoSlot ? planes_.normal(cell.plane) : cell.direction(change.added));
+      add(change, T_world_sensor);
     }
+  }
+
+  /// Adds what the scan saw to a cell.
+  void add(CellChange& change, const Eigen::Isometry3d& T_world_sensor) {
+    Cell& cell = grid_.writable(change.cell);
+    const Eigen::Vector3d ray_m =
+        grid_.geometric_centre_m(change.cell) + change.added.points.mean() - T_world_sensor.translation();
+    double depth_m = T_world_sensor.linear().col(2).dot(ray_m);
+    Eigen::Vector3d normal = cell.direction(change.added);
+    if (cell.plane != kNoSlot) {
+      // Where the ray meets the plane: the same for all layers of cells that the noise is spread over.
+      const Plane& plane = planes_.plane(cell.plane);
+      normal = plane.normal();
+      const double slope = normal.dot(ray_m);
+      if (slope < 0.0) depth_m *= -plane.signed_distance_m(T_world_sensor.translation()) / slope;
+    }
+    change.trust = range_trust(depth_m);
+    cell.add(change.added, normal, change.trust);
+  }
+
+  /// Beside the limits of the range the noise of the depth is cut off on one side, which shifts what is seen there by
+  /// up to its standard error: such points shape a plane only where there are no others.
+  double range_trust(double depth_m) const {
+    constexpr double kSigmas = 3.0;
+    constexpr double kTrust = 1e-3;
+    const double margin_m = kSigmas * config_.sensor.depth_sigma_per_m * depth_m * depth_m;
+    const bool cut = depth_m < config_.sensor.min_range_m + margin_m || depth_m > config_.sensor.max_range_m - margin_m;
+    return cut ? kTrust : 1.0;
   }
 
   void fit_normals(StageObserver* observer) {

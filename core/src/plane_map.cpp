@@ -26,6 +26,25 @@ double band_variance_m2(const PoseCovariance& pose, double plane_offset_m) {
   return std::min(point_variance_m2(pose), plane_offset_m * plane_offset_m);
 }
 
+/// Noise of more than this share of a cell spreads a surface over several layers of cells.
+constexpr double kLayeredShare = 0.25;
+
+/// Mean square distance to a plane of the noise that a cell holds of it: all of it where the plane passes through the
+/// middle of the cell, its tail in the outer layers of what noise spreads over several cells. The second moment of a
+/// normal distribution between the cell's faces.
+/// @param centre_m  signed distance of the cell's centre
+double expected_scatter_m2(double centre_m, double cell_size_m, double variance_m2) {
+  const double sigma_m = std::sqrt(variance_m2);
+  const double low = (std::abs(centre_m) - 0.5 * cell_size_m) / sigma_m;
+  const double high = (std::abs(centre_m) + 0.5 * cell_size_m) / sigma_m;
+  constexpr double kFar = 3.0;
+  if (sigma_m < kLayeredShare * cell_size_m || std::abs(low) > kFar) return variance_m2;
+  const auto density = [](double x) { return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi); };
+  const auto above = [](double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2); };
+  const double share = above(low) - above(high);
+  return variance_m2 * (1.0 + (low * density(low) - high * density(high)) / share);
+}
+
 template <class T>
 void sort_unique(std::vector<T>& values) {
   std::sort(values.begin(), values.end());
@@ -71,11 +90,17 @@ float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const Plan
   // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
   // scatter about the plane by more than their errors, and its normal turns away.
   const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
+  const double variance_m2 = cell.evidence_variance_m2() + pose_variance_m2_;
   const double expected_m2 =
-      cell.evidence_variance_m2() + config_.core_floor_m * config_.core_floor_m + pose_variance_m2_;
+      expected_scatter_m2(d_m, grid.cell_size_m(), variance_m2) + config_.core_floor_m * config_.core_floor_m;
   const double ratio = cell.evidence.unpacked().mean_square_distance(normal, d_m) / expected_m2;
   if (ratio > config_.core_sigmas * config_.core_sigmas) return 0.0F;
-  if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < core_cosine_) return 0.0F;
+  // The normal of a layer of noise says nothing of what else is there.
+  const double layered_m = kLayeredShare * grid.cell_size_m();
+  if (variance_m2 < layered_m * layered_m && cell.has_normal() &&
+      normal.dot(cell.normal.cast<double>()) < core_cosine_) {
+    return 0.0F;
+  }
   const double excess = std::max(1.0, ratio);
   return static_cast<float>(1.0 / (excess * excess));
 }
@@ -125,6 +150,11 @@ void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
   cell.plane = kNoSlot;
 }
 
+bool PlaneMap::is_split_off(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const {
+  return config_.splits &&
+         is_other_surface(grid.cell(ref), grid.geometric_centre_m(ref), state(slot).fit.plane, grid.cell_size_m());
+}
+
 void PlaneMap::detach(const UncertainGrid& grid, CellRef ref) {
   const Cell& cell = grid.cell(ref);
   if (cell.plane != kNoSlot) state(cell.plane).statistics.remove(cell, grid.geometric_centre_m(ref));
@@ -141,7 +171,8 @@ void PlaneMap::attach(UncertainGrid& grid, CellRef ref) {
   const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
   const bool side = !config_.view_side || plane.fit.plane.normal().dot(cell.sums.view.cast<double>()) > 0.0;
   constexpr double kHysteresis = 1.5;  // so that a cell on the limit does not come and go
-  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side) leave(grid, ref);
+  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side || is_split_off(grid, ref, cell.plane))
+    leave(grid, ref);
 }
 
 // Planes and planes.
@@ -261,6 +292,7 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
     if (cell.plane != kNoSlot) continue;
     const double distance_m = std::abs(state(target).fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
     if (config_.offset_test && distance_m > band_m(cell, state(target).fit)) continue;
+    if (is_split_off(grid, ref, target)) continue;
     join(grid, ref, target);
   }
   refit(target);
@@ -303,7 +335,7 @@ void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> 
     if (cell.plane == kNoSlot || !(cell.plane_weight > 0.0F)) continue;
     State& plane = state(cell.plane);
     if (plane.seen.weight <= 0.0) seen.push_back(cell.plane);
-    const double share = static_cast<double>(cell.plane_weight);
+    const double share = change.trust * static_cast<double>(cell.plane_weight);
     plane.seen.add(change.added.points, share * change.added.point_weight(plane.fit.plane.normal()),
                    grid.geometric_centre_m(change.cell) - plane.statistics.origin_m());
   }
@@ -333,6 +365,7 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const
     if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < kAdoptingCosine) return;
     const double distance_m = std::abs(plane.fit.plane.signed_distance_m(centre_m));
     if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) return;
+    if (is_split_off(grid, ref, slot)) return;
     if (distance_m > config_.cell_offset_m || cell.plane != kNoSlot) {
       // A layer of the plane's slab: the plane's own cells lie behind or before it, not beside it.
       const Eigen::Vector3d step = grid.virtual_centre_m(other) - centre_m;

@@ -15,6 +15,7 @@ namespace planemap {
 struct CellChange {
   CellRef cell;
   ScanSums added;
+  double trust = 1.0;  ///< that it deserves as evidence, 0 to 1; set by who adds it
 };
 
 /// Assigns the points of a scan to cells by expected squared distance (Eq. 7; Fig. 3, line 2).
@@ -36,6 +37,7 @@ class Assigner {
   /// Assigns the scan. The grid gains empty cells but no evidence: that is in changes(), in an order that depends on
   /// the scan and the grid alone, and each changed cell's `working` is its place there until finish().
   PointCounts assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor);
+  std::vector<CellChange>& changes() { return changes_; }
   const std::vector<CellChange>& changes() const { return changes_; }
   /// Ends the scan: no cell is working any more. changes() stay until the next scan.
   void finish(UncertainGrid& grid);

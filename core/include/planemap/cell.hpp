@@ -61,6 +61,7 @@ struct Cell {
   /// noise of far looks spreads a wall over three layers of cells, the middle one also holds near looks, and would
   /// count its share of the far ones for more than the outer layers count theirs.
   PackedMoments evidence;
+  float evidence_count = 0.0F;                       ///< points, those that are trusted less for less than one
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< uncertain normal (Definition 3); zero: not known
   float deviation_rad = 0.0F;                        ///< its deviation by the min-max approach
   float normal_count = 0.0F;                         ///< points when the normal was last fitted
@@ -74,13 +75,15 @@ struct Cell {
     return (has_normal() ? normal : scan.view).cast<double>().normalized();
   }
   /// Takes in what a scan adds.
-  /// @param direction  unit: the normal of the cell's plane, or direction() where it has none
-  void add(const ScanSums& scan, const Eigen::Vector3d& direction) {
+  /// @param along  unit; that its points count as evidence along: the normal of the cell's plane, or direction()
+  /// @param trust   that the evidence deserves, above 0, at most 1
+  void add(const ScanSums& scan, const Eigen::Vector3d& along, double trust = 1.0) {
     sums.add(scan);
-    evidence.add(scan.points, scan.point_weight(direction));
+    evidence.add(scan.points, trust * scan.point_weight(along));
+    evidence_count += static_cast<float>(trust * scan.count());
   }
-  /// Variance of a point as its evidence is weighted: the harmonic mean. @pre sums.count > 0
-  double evidence_variance_m2() const { return sums.count / static_cast<double>(evidence.weight); }
+  /// Variance of a point along the normal as its evidence is weighted: the harmonic mean. @pre sums.count > 0
+  double evidence_variance_m2() const { return static_cast<double>(evidence_count / evidence.weight); }
 };
 
 }  // namespace planemap

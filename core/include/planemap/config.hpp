@@ -121,7 +121,7 @@ void visit_fields(Config& c, Visit&& visit) {
 struct PlaneConfig {
   double normal_angle_deg = 15.0;
   int min_cells = 12;
-  double min_width_cells = 1.6;
+  double min_width_cells = 0.6;
   bool best_seeds_first = true;
   bool pooled_refit = true;
   bool offset_test = true;
@@ -129,6 +129,7 @@ struct PlaneConfig {
   double plane_offset_m = 0.02;
   bool view_side = true;
   bool adoption = true;
+  bool splits = true;
   double bridge_gap_m = 1.0;
   double bridge_angle_deg = 1.5;
   double slab_sigmas = 3.0;
@@ -157,6 +158,7 @@ void visit_fields(Config& c, Visit&& visit) {
         c.plane_offset_m);
   visit(FieldInfo{"view_side", "surfaces seen from opposite sides are never one plane"}, c.view_side);
   visit(FieldInfo{"adoption", "cells without a plane join an adjacent one by their distance to it"}, c.adoption);
+  visit(FieldInfo{"splits", "cells that are sure of another surface leave their plane"}, c.splits);
   visit(FieldInfo{"bridge_gap_m", "coplanar pieces with a gap up to this are one plane; 0: off", 0.0, 10.0},
         c.bridge_gap_m);
   visit(FieldInfo{"bridge_angle_deg", "pieces across a gap differ by at most this angle", 0.0, 90.0},

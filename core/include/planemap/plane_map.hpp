@@ -68,8 +68,8 @@ class PlaneMap {
                       std::vector<RemovedPlane>& removed);
   /// Whether a plane changed since the last update_records().
   bool changed() const { return !dirty_.empty() || !removed_.empty(); }
-  /// The normal of the plane that a cell is labelled with.
-  const Eigen::Vector3d& normal(PlaneSlot slot) const { return state(slot).fit.plane.normal(); }
+  /// The plane that a cell is labelled with.
+  const Plane& plane(PlaneSlot slot) const { return state(slot).fit.plane; }
   /// The id of the plane that a cell is labelled with.
   static PlaneId id_of(PlaneSlot slot) { return slot; }
 
@@ -101,6 +101,7 @@ class PlaneMap {
   void forget_left_cells(const UncertainGrid& grid, PlaneSlot slot);
   void reweigh(UncertainGrid& grid, PlaneSlot slot);
   double band_m(const Cell& cell, const PlaneFit& fit) const;
+  bool is_split_off(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
 
   bool agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
              double max_angle_rad, double max_offset_m) const;

@@ -27,14 +27,17 @@ Eigen::Vector3d centroid_of(const Surface& surface) {
 
 CoplanarLinks links_of(std::span<const Surface> surfaces) {
   std::vector<PlaneRecord> records;
+  std::vector<double> areas_m2;
   for (const Surface& surface : surfaces) {
+    if (surface.facet) continue;
+    areas_m2.push_back(area_m2(surface));
     PlaneRecord& record = records.emplace_back();
     record.id = surface.id;
     record.plane = surface.plane;
     record.centroid_m = centroid_of(surface);
   }
   std::vector<SizedPlane> planes;
-  for (std::size_t i = 0; i < records.size(); ++i) planes.push_back({&records[i], area_m2(surfaces[i])});
+  for (std::size_t i = 0; i < records.size(); ++i) planes.push_back({&records[i], areas_m2[i]});
   return coplanar_links(planes);
 }
 
