@@ -25,6 +25,7 @@ MapperConfig preset(Preset which) {
   config.planes.bridge_gap_m = 0.0;
   config.planes.slab_sigmas = 0.0;
   config.planes.core_sigmas = 0.0;
+  config.wear.enabled = false;
   return config;
 }
 

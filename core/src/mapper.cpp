@@ -5,6 +5,7 @@
 #include "planemap/local_planes.hpp"
 #include "planemap/plane_map.hpp"
 #include "planemap/uncertain_grid.hpp"
+#include "planemap/wear.hpp"
 
 namespace planemap {
 
@@ -41,7 +42,8 @@ class Mapper::Impl {
         assigner_(config.core, config.sensor, config.grid),
         normals_(config.normals),
         local_(config.grid, config.normals, config.planes),
-        planes_(config.grid, config.planes, config.pose_error) {}
+        planes_(config.grid, config.planes, config.pose_error),
+        wear_(config.wear, config.sensor, config.grid.cell_size_m) {}
 
   ScanReport integrate(const Scan& scan, const ScanPose& pose, StageObserver* observer) {
     ScanReport report;
@@ -56,11 +58,12 @@ class Mapper::Impl {
     {
       const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
       const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), pose);
-      assigner_.finish(grid_);
       report.local_planes = local.size();
       report.new_planes = global.new_planes;
       report.merged_planes = global.merged_planes;
     }
+    if (config_.wear.enabled) wear(scan, pose.T_world_sensor, observer, report);
+    assigner_.finish(grid_);
     report.planes_changed = planes_.changed();
     if (report.planes_changed) ++revision_;
     return report;
@@ -132,6 +135,13 @@ class Mapper::Impl {
     for (const CellChange& change : assigner_.changes()) planes_.attach(grid_, change.cell);
   }
 
+  void wear(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer, ScanReport& report) {
+    const StageScope scope(observer, Stage::kWear);
+    const auto worn = wear_.look(grid_, scan, T_world_sensor, assigner_.changes());
+    if (!worn.empty()) planes_.wear_away(grid_, worn);
+    report.worn_cells = worn.size();
+  }
+
   void trim_removals() {
     if (removed_.size() <= kKeptRemovals) return;
     const std::size_t surplus = removed_.size() - kKeptRemovals;
@@ -148,6 +158,7 @@ class Mapper::Impl {
   NormalEstimator normals_;
   LocalPlaneExtractor local_;
   PlaneMap planes_;
+  Wear wear_;
   std::vector<std::shared_ptr<const PlaneRecord>> records_;
   std::vector<RemovedPlane> removed_;
   std::uint64_t removed_complete_since_ = 0;

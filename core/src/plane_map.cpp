@@ -250,6 +250,7 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
   if (poses_err_) {
     into.pose_evidence.add(from.pose_evidence, from.statistics.origin_m() - into.statistics.origin_m(), pose_error_);
   }
+  into.worn_cells += from.worn_cells;
   into.first_seen_utime = std::min(into.first_seen_utime, from.first_seen_utime);
   into.last_seen_utime = std::max(into.last_seen_utime, from.last_seen_utime);
   into.merged.push_back(id_of(gone));
@@ -444,13 +445,17 @@ void PlaneMap::dissolve_small(UncertainGrid& grid, GlobalReport& report) {
   for (const PlaneSlot slot : candidates) {
     if (!states_[slot] || 3 * state(slot).statistics.cell_count() >= static_cast<std::size_t>(config_.min_cells))
       continue;
-    for (const CellRef ref : state(slot).cells) {
-      if (grid.cell(ref).plane == slot) leave(grid, ref);
-    }
-    removed_.push_back({id_of(slot), kNoPlane, 0});
-    states_[slot].reset();
+    dissolve(grid, slot);
     ++report.removed_planes;
   }
+}
+
+void PlaneMap::dissolve(UncertainGrid& grid, PlaneSlot slot) {
+  for (const CellRef ref : state(slot).cells) {
+    if (grid.cell(ref).plane == slot) leave(grid, ref);
+  }
+  removed_.push_back({id_of(slot), kNoPlane, 0});
+  states_[slot].reset();
 }
 
 // Records for readers.

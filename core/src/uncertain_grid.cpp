@@ -39,6 +39,12 @@ CellRef UncertainGrid::find_or_add(const CellIndex& index) {
   return {slot, static_cast<std::uint32_t>(ordinal)};
 }
 
+std::optional<std::uint32_t> UncertainGrid::find_block(const BlockIndex& index) const {
+  const std::uint32_t slot = block_slot(index);
+  if (slot == kNoBlock) return std::nullopt;
+  return slot;
+}
+
 std::uint32_t UncertainGrid::block_slot(const BlockIndex& index) const {
   const auto found = slots_.find(index);
   return found == slots_.end() ? kNoBlock : found->second;

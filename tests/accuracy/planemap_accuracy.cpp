@@ -67,6 +67,8 @@ nlohmann::json to_json(const Summary& s) {
           {"underSegmented", s.under},
           {"missed", s.missed},
           {"noise", s.noise},
+          {"storedCells", s.stored_cells},
+          {"wornCells", s.worn_cells},
           {"labelledShare", s.labelled_share},
           {"normalErrorDeg", {{"mean", s.normal_mean_deg}, {"max", s.normal_max_deg}}},
           {"offsetErrorM", {{"mean", s.offset_mean_m}, {"max", s.offset_max_m}}},

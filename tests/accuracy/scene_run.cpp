@@ -34,22 +34,24 @@ MappedScene map_scene(const RunConfig& config) {
   SeenSurfaces seen(source.truth(), config.mapping.sensor.max_range_m);
   std::chrono::steady_clock::duration spent{};
   std::size_t scans = 0;
+  std::size_t worn_cells = 0;
   while (auto frame = source.next()) {
     seen.add(source, frame->scan);
     const Scan scan = std::move(frame->scan);
     const auto begin = std::chrono::steady_clock::now();
-    mapper.integrate(scan, frame->T_world_sensor);
+    worn_cells += mapper.integrate(scan, frame->T_world_sensor).worn_cells;
     spent += std::chrono::steady_clock::now() - begin;
     ++scans;
   }
   const double ms_per_scan =
       std::chrono::duration<double, std::milli>(spent).count() / static_cast<double>(std::max<std::size_t>(scans, 1));
-  return {mapper.snapshot(), std::move(seen), ms_per_scan};
+  return {mapper.snapshot(), std::move(seen), ms_per_scan, worn_cells};
 }
 
 Run run_scene(const RunConfig& config) {
   const MappedScene mapped = map_scene(config);
-  return {score(*mapped.map, mapped.seen, config.scoring), mapped.ms_per_scan};
+  return {score(*mapped.map, mapped.seen, config.scoring), mapped.ms_per_scan, mapped.map->cell_count(),
+          mapped.worn_cells};
 }
 
 }  // namespace planemap::accuracy

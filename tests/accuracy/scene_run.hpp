@@ -30,7 +30,8 @@ struct RunConfig {
 struct MappedScene {
   std::shared_ptr<const MapSnapshot> map;
   SeenSurfaces seen;
-  double ms_per_scan = 0.0;  ///< mean, milliseconds
+  double ms_per_scan = 0.0;    ///< mean, milliseconds
+  std::size_t worn_cells = 0;  ///< taken away, though nothing moves
 };
 
 /// Renders the scene and maps it.

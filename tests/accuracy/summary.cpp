@@ -86,6 +86,8 @@ Summary summarise(std::span<const Run> runs) {
     s.under += run.score.count(Verdict::kUnderSegmented);
     s.missed += run.score.count(Verdict::kMissed);
     s.noise += run.score.noise.size();
+    s.stored_cells += run.stored_cells;
+    s.worn_cells += run.worn_cells;
     seen_m2 += run.score.seen_m2();
     labelled_m2 += run.score.labelled_m2();
     s.ms_per_scan += run.ms_per_scan / static_cast<double>(runs.size());

@@ -10,6 +10,8 @@ namespace planemap::accuracy {
 struct Run {
   Score score;
   double ms_per_scan = 0.0;  ///< mean, milliseconds
+  std::size_t stored_cells = 0;
+  std::size_t worn_cells = 0;  ///< taken away, though nothing moves
 };
 
 /// Errors of the normals of cells, and how they compare with what the cells say: ratio = error / stated deviation.
@@ -32,6 +34,8 @@ struct Summary {
   std::size_t under = 0;
   std::size_t missed = 0;
   std::size_t noise = 0;
+  std::size_t stored_cells = 0;
+  std::size_t worn_cells = 0;
   double labelled_share = 0.0;
   double normal_mean_deg = 0.0;
   double normal_max_deg = 0.0;

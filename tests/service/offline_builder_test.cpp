@@ -63,6 +63,24 @@ TEST(OfflineBuilder, MapsFramesAtTheirPoses) {
   EXPECT_EQ(builder.counters().at("scans.mapped"), 1);
 }
 
+TEST(OfflineBuilder, CountsTheCellsThatWereWornAway) {
+  OfflineBuilder builder(ServiceConfig{}, 5);
+  DepthScan scan;
+  scan.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
+  std::size_t worn = 0;
+  for (int i = 0; i < 25; ++i) {  // a board, and from half a second on the wall a metre behind it
+    scan.utime = kSecond + i * kSecond / 10;
+    scan.depth.assign(80 * 60, i < 5 ? 1000 : 2000);
+    worn += builder.add_frame(scan, Eigen::Isometry3d::Identity()).worn_cells;
+    if (i == 4) {
+      EXPECT_EQ(builder.snapshot()->planes().size(), 1u);
+      EXPECT_EQ(builder.counters().at("cells.worn"), 0);
+    }
+  }
+  EXPECT_GT(worn, 60u);
+  EXPECT_EQ(builder.counters().at("cells.worn"), static_cast<std::int64_t>(worn));
+}
+
 TEST(OfflineBuilder, AJumpBeginsANewMapWhereItIsToldTo) {
   ServiceConfig config;
   const auto build = [&] {

@@ -201,6 +201,27 @@ void visit_fields(Config& c, Visit&& visit) {
         c.correlation_s);
 }
 
+/// How things that have gone leave the map.
+struct WearConfig {
+  bool enabled = true;
+  double after_s = 1.0;
+  double clearance_cells = 0.25;
+  double sigmas = 3.0;
+};
+
+template <MaybeConst<WearConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"enabled", "cells that later scans see through lose their points; off: the map only grows"},
+        c.enabled);
+  visit(FieldInfo{"after_s", "a cell goes when it was seen through for so long without getting points", 0.01, 60.0},
+        c.after_s);
+  visit(FieldInfo{"clearance_cells", "what is seen through must be free for so many cells around the cell, too", 0.0,
+                  4.0},
+        c.clearance_cells);
+  visit(FieldInfo{"sigmas", "what is seen behind a cell lies behind it by more sigma of both depths", 0.0, 100.0},
+        c.sigmas);
+}
+
 /// All of the method. Values have been checked by whoever read them; the mapper asserts no more than their ranges.
 struct MapperConfig {
   CoreConfig core;
@@ -209,6 +230,7 @@ struct MapperConfig {
   NormalConfig normals;
   PlaneConfig planes;
   PoseErrorConfig pose_error;
+  WearConfig wear;
 };
 
 enum class Preset {

@@ -12,11 +12,11 @@
 
 namespace planemap {
 
-/// The steps of the method (paper, Fig. 3 and Fig. 6), in order.
-enum class Stage { kAssign, kNormals, kLocalPlanes, kGlobalPlanes, kSnapshot };
-constexpr std::size_t kStageCount = 5;
+/// The steps of the method (paper, Fig. 3 and Fig. 6; wear is ours), in order.
+enum class Stage { kAssign, kNormals, kLocalPlanes, kGlobalPlanes, kWear, kSnapshot };
+constexpr std::size_t kStageCount = 6;
 constexpr const char* name_of(Stage stage) {
-  constexpr const char* kNames[] = {"assign", "normals", "localPlanes", "globalPlanes", "snapshot"};
+  constexpr const char* kNames[] = {"assign", "normals", "localPlanes", "globalPlanes", "wear", "snapshot"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -35,6 +35,7 @@ struct ScanReport {
   std::size_t local_planes = 0;   ///< of this scan
   std::size_t new_planes = 0;
   std::size_t merged_planes = 0;
+  std::size_t worn_cells = 0;   ///< cells that lost their points, since scans see through them
   bool planes_changed = false;  ///< the revision grew
 };
 

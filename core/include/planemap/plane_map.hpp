@@ -62,6 +62,10 @@ class PlaneMap {
   GlobalReport merge(UncertainGrid& grid, std::span<const LocalPlane> local, std::span<const CellChange> changes,
                      const ScanPose& scan);
 
+  /// Takes the points of cells away, and with them all that their planes had from them. A plane that was worn down to
+  /// less than what starts one is gone.
+  void wear_away(UncertainGrid& grid, std::span<const CellRef> cells);
+
   /// Records of the planes that changed since the last call, made anew; `records` holds all, by id.
   /// @return whether anything changed
   bool update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
@@ -84,6 +88,7 @@ class PlaneMap {
     std::vector<PlaneId> merged;
     std::int64_t first_seen_utime = 0;
     std::int64_t last_seen_utime = 0;
+    std::size_t worn_cells = 0;  ///< that it has lost to wear, ever
     std::size_t cells_when_bridged = 0;
     int scans_since_bridged = 0;
     bool touched = false;  ///< by this scan
@@ -115,6 +120,8 @@ class PlaneMap {
   void bridge(UncertainGrid& grid, GlobalReport& report);
   PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const;
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
+  void dissolve(UncertainGrid& grid, PlaneSlot slot);
+  bool is_worn_out(PlaneSlot slot) const;
   void take_pose(const ScanPose& scan);
   void note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan);
   PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;

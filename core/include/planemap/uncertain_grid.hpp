@@ -40,6 +40,9 @@ class UncertainGrid {
   std::optional<CellRef> find(const CellIndex& index) const;  ///< Empty: never observed.
   /// The cell at the index, which is made where there was none. Its block becomes writable.
   CellRef find_or_add(const CellIndex& index);
+  /// Slot of a block; empty: it holds no cell.
+  std::optional<std::uint32_t> find_block(const BlockIndex& index) const;
+  const Block& block(std::uint32_t slot) const { return *blocks_[slot]; }
   const Cell& cell(CellRef ref) const { return blocks_[ref.block]->cell(ref.ordinal); }
   /// For changes; copies the block where a snapshot shares it.
   Cell& writable(CellRef ref) { return writable_block(ref.block).cell(ref.ordinal); }

@@ -185,7 +185,7 @@ void visit_fields(Config& c, Visit&& visit) {
 }
 
 struct ServiceConfig {
-  MapperConfig mapper;  ///< sections core, sensor, grid, normals and planes
+  MapperConfig mapper;  ///< sections core, sensor, grid, normals, planes and wear
   MapConfig map;
   LcmConfig lcm;
   std::vector<InputConfig> inputs = {InputConfig{}};
@@ -210,6 +210,7 @@ void visit_sections(Config& c, Visit&& visit) {
   visit(SectionInfo{"grid", "The uncertain grid."}, c.mapper.grid);
   visit(SectionInfo{"normals", "Uncertain normals of cells."}, c.mapper.normals);
   visit(SectionInfo{"planes", "Local and global planes."}, c.mapper.planes);
+  visit(SectionInfo{"wear", "How things that have gone leave the map."}, c.mapper.wear);
   visit(SectionInfo{"map", "Names and directions of the map."}, c.map);
   visit(SectionInfo{"lcm", "The bus."}, c.lcm);
   visit(SectionInfo{"inputs", "Sensors: a list; each has a channel of its own."}, c.inputs);

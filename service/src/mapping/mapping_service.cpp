@@ -115,12 +115,13 @@ void MappingService::map(const RegisteredScan& scan) {
     while (mapped_at_host_s_.front() < end_s - kRateWindowS) mapped_at_host_s_.pop_front();
   }
   counters_.scan_mapped(report.points);
+  counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));
   const auto& ms = timer.ms();
   spdlog::trace(
       "scan {}: {} points, {} cells, {:.2f} ms (assign {:.2f}, normals {:.2f}, local {:.2f}, global {:.2f}, "
-      "snapshot {:.2f})",
+      "wear {:.2f}, snapshot {:.2f})",
       utime_of(scan.scan), report.points.mapped, report.touched_cells, 1e3 * (end_s - begin_s), ms[0], ms[1], ms[2],
-      ms[3], ms[4]);
+      ms[3], ms[4], ms[5]);
 }
 
 std::shared_ptr<const MapSnapshot> MappingService::snapshot() const {

@@ -56,6 +56,7 @@ class OfflineBuilder::Impl {
     const ScanReport report = mapper_.integrate(scan, T_world_sensor, &timer_, pose_covariance);
     const std::chrono::duration<double, std::milli> ms = StageTimer::Clock::now() - begin;
     counters_.scan_mapped(report.points);
+    counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));
     points_ += report.points;
     times_.scan_ms.push_back(ms.count());
     for (std::size_t i = 0; i < kStageCount; ++i) times_.stage_ms[i].push_back(timer_.ms()[i]);

@@ -85,6 +85,9 @@ std::string summary_text(const BuildResult& result, const ExportMap& map) {
   text += '\n' + times_text(result.times) + '\n';
   text += fmt::format("map {}, revision {}, frame {}; planes: {}, cells: {}\n", map.epoch, map.revision, map.frame,
                       map.planes.size(), result.snapshot->cell_count());
+  if (const auto worn = counters_below(result, "cells.worn"); !worn.empty()) {
+    text += fmt::format("cells worn away, since later scans see through them: {}\n", worn.begin()->second);
+  }
   return text + plane_table(map);
 }
 
