@@ -16,6 +16,7 @@ MapperConfig preset(Preset which) {
   config.normals.refresh_growth = 0.0;
   config.planes.min_cells = 1;
   config.planes.min_width_cells = 0.0;
+  config.planes.strip_cells = 0.0;
   config.planes.best_seeds_first = false;
   config.planes.pooled_refit = false;
   config.planes.offset_test = false;

@@ -263,14 +263,26 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
   return survivor;
 }
 
+bool PlaneMap::is_pure(const LocalPlane& local) const {
+  // A cell across a corner scatters about its chord by a tenth of its edge: only less noise than that tells it from one
+  // that is flat.
+  constexpr double kMostNoise = 0.075;
+  constexpr double kPureSigmas = 1.2;
+  const double variance_m2 = local.statistics.core_point_count() / local.statistics.weight() + pose_variance_m2_;
+  const double most_m = kMostNoise * grid_config_.cell_size_m;
+  return variance_m2 < most_m * most_m &&
+         local.fit.residual_m2 < kPureSigmas * kPureSigmas * variance_m2 + config_.core_floor_m * config_.core_floor_m;
+}
+
 void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
   std::vector<CellRef> free;
   for (const CellRef ref : local.cells) {
     if (grid.cell(ref).plane == kNoSlot) free.push_back(ref);
   }
   if (static_cast<double>(free.size()) < config_.min_cells) return;
-  // A strip of hardly more than one cell's width leans to whatever is beside it.
   if (local.fit.width_m() < config_.min_width_cells * grid.cell_size_m()) return;
+  // A strip of hardly more than one cell's width leans to whatever is beside it, unless its cells hold nothing else.
+  if (local.fit.width_m() < config_.strip_cells * grid.cell_size_m() && !is_pure(local)) return;
   const auto slot = static_cast<PlaneSlot>(states_.size());
   states_.push_back(std::make_unique<State>(grid.geometric_centre_m(local.cells.front())));
   State& plane = state(slot);

@@ -110,8 +110,8 @@ bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const P
   constexpr double kPureSigmas = 1.5;
   constexpr double kFloor_m = 0.002;  // as planes.core_floor_m: scatter beside the sensor's
   constexpr double kLeastSpread = 0.15;
-  constexpr double kAngle_rad = 0.1;
-  constexpr double kOffset_m = 0.01;
+  constexpr double kAngle_rad = 0.14;
+  constexpr double kOffset_m = 0.02;
   constexpr double kSigmas = 3.0;
   const double variance_m2 = cell.evidence_variance_m2();
   const double layered_m = kLayeredShare * cell_size_m;

@@ -122,6 +122,7 @@ struct PlaneConfig {
   double normal_angle_deg = 15.0;
   int min_cells = 12;
   double min_width_cells = 0.6;
+  double strip_cells = 1.6;
   bool best_seeds_first = true;
   bool pooled_refit = true;
   bool offset_test = true;
@@ -147,6 +148,8 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"min_cells", "a local plane of fewer cells starts no global one", 1, 1e6}, c.min_cells);
   visit(FieldInfo{"min_width_cells", "a local plane narrower than this many cells starts no global one", 0.0, 1000.0},
         c.min_width_cells);
+  visit(FieldInfo{"strip_cells", "one narrower than this has to be flat to what its points' errors allow", 0.0, 1000.0},
+        c.strip_cells);
   visit(FieldInfo{"best_seeds_first", "grow local planes from the cells with the surest normals first"},
         c.best_seeds_first);
   visit(FieldInfo{"pooled_refit", "fit planes to the second moments of their cells, not to the mean of their normals"},

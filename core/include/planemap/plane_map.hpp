@@ -113,6 +113,7 @@ class PlaneMap {
   void merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
   std::vector<PlaneSlot> touching(const UncertainGrid& grid, const LocalPlane& local) const;
   PlaneSlot absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report);
+  bool is_pure(const LocalPlane& local) const;
   void start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
   PlaneSlot merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b);
   void adopt(UncertainGrid& grid, std::span<const CellChange> changes);
