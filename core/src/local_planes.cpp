@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "planemap/membership.hpp"
+
 namespace planemap {
 
 namespace {

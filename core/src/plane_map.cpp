@@ -5,15 +5,13 @@
 #include <limits>
 #include <numbers>
 
+#include "sort_unique.hpp"
+
 namespace planemap {
 
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-/// Small planes are weighed anew with each scan that touches them: their fit still moves, and with it who shapes them.
-/// That bounds the work of a scan; in larger planes a cell is weighed when it is touched.
-constexpr std::size_t kReweighedCells = 256;
 
 /// A plane looks for pieces across a gap when it has grown by a tenth, and at the latest after so many scans that touch
 /// it: its fit gets better without growth.
@@ -24,31 +22,6 @@ constexpr int kBridgingScans = 10;
 /// itself in the end, though scans that follow each other fit well.
 double band_variance_m2(const PoseCovariance& pose, double plane_offset_m) {
   return std::min(point_variance_m2(pose), plane_offset_m * plane_offset_m);
-}
-
-/// Noise of more than this share of a cell spreads a surface over several layers of cells.
-constexpr double kLayeredShare = 0.25;
-
-/// Mean square distance to a plane of the noise that a cell holds of it: all of it where the plane passes through the
-/// middle of the cell, its tail in the outer layers of what noise spreads over several cells. The second moment of a
-/// normal distribution between the cell's faces.
-/// @param centre_m  signed distance of the cell's centre
-double expected_scatter_m2(double centre_m, double cell_size_m, double variance_m2) {
-  const double sigma_m = std::sqrt(variance_m2);
-  const double low = (std::abs(centre_m) - 0.5 * cell_size_m) / sigma_m;
-  const double high = (std::abs(centre_m) + 0.5 * cell_size_m) / sigma_m;
-  constexpr double kFar = 3.0;
-  if (sigma_m < kLayeredShare * cell_size_m || std::abs(low) > kFar) return variance_m2;
-  const auto density = [](double x) { return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi); };
-  const auto above = [](double x) { return 0.5 * std::erfc(x / std::numbers::sqrt2); };
-  const double share = above(low) - above(high);
-  return variance_m2 * (1.0 + (low * density(low) - high * density(high)) / share);
-}
-
-template <class T>
-void sort_unique(std::vector<T>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 }  // namespace
@@ -74,108 +47,6 @@ void PlaneMap::mark_changed(PlaneSlot slot) {
 void PlaneMap::refit(PlaneSlot slot) {
   if (const auto fit = state(slot).statistics.fit(config_.pooled_refit)) state(slot).fit = *fit;
 }
-
-// Membership of cells.
-
-double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
-  // Poses that wander move what they see: without their part the band cuts off what it is to hold.
-  const double variance_m2 = cell.sums.point_variance(fit.plane.normal()) + pose_variance_m2_;
-  return std::max(config_.cell_offset_m, config_.slab_sigmas * std::sqrt(variance_m2));
-}
-
-float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
-  const Cell& cell = grid.cell(ref);
-  const Eigen::Vector3d& normal = fit.plane.normal();
-  if (!(config_.core_sigmas > 0.0)) return 1.0F;
-  // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
-  // scatter about the plane by more than their errors, and its normal turns away.
-  const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
-  const double variance_m2 = cell.evidence_variance_m2() + pose_variance_m2_;
-  const double expected_m2 =
-      expected_scatter_m2(d_m, grid.cell_size_m(), variance_m2) + config_.core_floor_m * config_.core_floor_m;
-  const double ratio = cell.evidence.unpacked().mean_square_distance(normal, d_m) / expected_m2;
-  if (ratio > config_.core_sigmas * config_.core_sigmas) return 0.0F;
-  // The normal of a layer of noise says nothing of what else is there.
-  const double layered_m = kLayeredShare * grid.cell_size_m();
-  if (variance_m2 < layered_m * layered_m && cell.has_normal() &&
-      normal.dot(cell.normal.cast<double>()) < core_cosine_) {
-    return 0.0F;
-  }
-  const double excess = std::max(1.0, ratio);
-  return static_cast<float>(1.0 / (excess * excess));
-}
-
-void PlaneMap::forget_left_cells(const UncertainGrid& grid, PlaneSlot slot) {
-  std::vector<CellRef>& cells = state(slot).cells;
-  const auto left = [&](CellRef ref) { return grid.cell(ref).plane != slot; };
-  cells.erase(std::remove_if(cells.begin(), cells.end(), left), cells.end());
-  sort_unique(cells);
-}
-
-void PlaneMap::reweigh(UncertainGrid& grid, PlaneSlot slot) {
-  State& plane = state(slot);
-  const std::size_t members = plane.statistics.cell_count();
-  const bool small = members <= kReweighedCells;
-  if (small || plane.cells.size() > 2 * members) forget_left_cells(grid, slot);
-  if (!small || plane.cells.empty() || !(config_.core_sigmas > 0.0)) return;
-  // Where no cell is good enough to shape the plane, they all do.
-  const bool any_core = std::any_of(plane.cells.begin(), plane.cells.end(),
-                                    [&](CellRef ref) { return member_weight(grid, ref, plane.fit) > 0.0F; });
-  PlaneStatistics fresh(grid.geometric_centre_m(plane.cells.front()));
-  for (const CellRef ref : plane.cells) {
-    Cell& cell = grid.writable(ref);
-    cell.plane_weight = any_core ? member_weight(grid, ref, plane.fit) : 1.0F;
-    fresh.add(cell, grid.geometric_centre_m(ref));
-  }
-  plane.statistics = fresh;
-}
-
-void PlaneMap::join(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
-  Cell& cell = grid.writable(ref);
-  cell.plane = slot;
-  cell.plane_weight = member_weight(grid, ref, state(slot).fit);
-  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
-  state(slot).statistics.add(cell, centre_m);
-  state(slot).cells.push_back(ref);
-  coarse_.add(centre_m, slot);
-  mark_changed(slot);
-}
-
-void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
-  Cell& cell = grid.writable(ref);
-  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
-  state(cell.plane).statistics.remove(cell, centre_m);
-  coarse_.remove(centre_m, cell.plane);
-  mark_changed(cell.plane);
-  cell.plane = kNoSlot;
-}
-
-bool PlaneMap::is_split_off(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const {
-  return config_.splits &&
-         is_other_surface(grid.cell(ref), grid.geometric_centre_m(ref), state(slot).fit.plane, grid.cell_size_m());
-}
-
-void PlaneMap::detach(const UncertainGrid& grid, CellRef ref) {
-  const Cell& cell = grid.cell(ref);
-  if (cell.plane != kNoSlot) state(cell.plane).statistics.remove(cell, grid.geometric_centre_m(ref));
-}
-
-void PlaneMap::attach(UncertainGrid& grid, CellRef ref) {
-  if (grid.cell(ref).plane == kNoSlot) return;
-  Cell& cell = grid.writable(ref);
-  State& plane = state(cell.plane);
-  cell.plane_weight = member_weight(grid, ref, plane.fit);
-  plane.statistics.add(cell, grid.geometric_centre_m(ref));
-  mark_changed(cell.plane);
-  if (!config_.offset_test) return;
-  const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
-  const bool side = !config_.view_side || plane.fit.plane.normal().dot(cell.sums.view.cast<double>()) > 0.0;
-  constexpr double kHysteresis = 1.5;  // so that a cell on the limit does not come and go
-  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side || is_split_off(grid, ref, cell.plane))
-    leave(grid, ref);
-}
-
-// Planes and planes.
 
 bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
                      double max_angle_rad, double max_offset_m) const {

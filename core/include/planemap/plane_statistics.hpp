@@ -79,11 +79,6 @@ inline double expected_squared_distance(const Eigen::Vector3d& a, double deviati
   return (a - b).squaredNorm() + deviation_a_rad * deviation_a_rad + deviation_b_rad * deviation_b_rad;
 }
 
-/// Whether a cell's own evidence is flat, sure and of another surface than a plane: it turns away from it by more than
-/// an angle that no edge beside a pure cell explains, or lies off it. False where the noise spreads over several cells,
-/// or the cell is not pure: it may then be of either.
-bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m);
-
 /// The squared distance of two unit normals with an angle between them: (2 sin(angle / 2))^2.
 double squared_chord(double angle_rad);
 

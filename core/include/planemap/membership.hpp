@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <planemap/cell.hpp>
+#include <planemap/plane.hpp>
+
+namespace planemap {
+
+/// Noise of more than this share of a cell's edge spreads a surface over several layers of cells.
+constexpr double kLayeredShare = 0.25;
+
+/// Mean square distance to a plane, square metres, of the noise that a cell holds of it: all of it where the plane
+/// passes through the middle of the cell, its tail in the outer layers of what noise spreads over several cells. The
+/// second moment of a normal distribution between the cell's faces.
+/// @param centre_m     signed distance of the cell's centre from the plane
+/// @param variance_m2  of the points along the plane's normal
+double expected_scatter_m2(double centre_m, double cell_size_m, double variance_m2);
+
+/// Whether a cell's own evidence is flat, sure and of another surface than a plane: it turns away from it by more than
+/// an angle that no edge beside a pure cell explains, or lies off it. False where the noise spreads over several cells,
+/// or the cell is not pure: it may then be of either.
+bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m);
+
+}  // namespace planemap
