@@ -22,7 +22,6 @@ MapperConfig preset(Preset which) {
   config.planes.offset_test = false;
   config.planes.view_side = false;
   config.planes.adoption = false;
-  config.planes.splits = false;
   config.planes.bridge_gap_m = 0.0;
   config.planes.slab_sigmas = 0.0;
   config.planes.core_sigmas = 0.0;

@@ -130,7 +130,7 @@ struct PlaneConfig {
   double plane_offset_m = 0.02;
   bool view_side = true;
   bool adoption = true;
-  bool splits = true;
+  bool splits = false;
   double bridge_gap_m = 1.0;
   double bridge_angle_deg = 1.5;
   double slab_sigmas = 3.0;
