@@ -1,5 +1,6 @@
 #include "planemap/coplanar.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
