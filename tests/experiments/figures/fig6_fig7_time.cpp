@@ -12,8 +12,9 @@ namespace planemap::experiments {
 
 namespace {
 
-constexpr std::array<const char*, kStageCount> kStageWords = {"points to cells (Eq. 7)", "normals", "local planes",
-                                                              "global planes", "snapshot"};
+constexpr auto kStageWords = std::to_array<const char*>(
+    {"points to cells (Eq. 7)", "normals", "local planes", "global planes", "wear", "snapshot"});
+static_assert(kStageWords.size() == kStageCount);
 
 struct TimeSummary {
   double mean_ms = 0.0;
