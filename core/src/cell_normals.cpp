@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "planemap/membership.hpp"
+
 namespace planemap {
 
 double min_max_deviation_rad(std::span<const UncertainCentre> centres, const Eigen::Vector3d& normal,
@@ -88,7 +90,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const Uncer
   neighbourhood_.assign(1, ref);
   std::optional<Fit> own = fit_gathered(grid, ref);
   // The own points must span a patch: a strip along an edge turns freely about it.
-  const double least_spread_m = 0.15 * grid.cell_size_m();
+  const double least_spread_m = kLeastPatchSpread * grid.cell_size_m();
   if (!own || !is_flat(*own) || own->spread_1_m2 < least_spread_m * least_spread_m) return std::nullopt;
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
   gather(grid, ref);

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
+
+#include "angles.hpp"
 
 namespace planemap {
 
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kChiSquare95 = 7.815;  // three degrees of freedom
 constexpr double kOffsetFloorM = 0.005;
 constexpr double kTiltFloorRad = 0.5 * kRadPerDeg;

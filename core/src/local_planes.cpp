@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "angles.hpp"
 #include "planemap/membership.hpp"
 
 namespace planemap {
-
-namespace {
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-}
 
 LocalPlaneExtractor::LocalPlaneExtractor(const GridConfig& grid, const NormalConfig& normals, const PlaneConfig& planes)
     : grid_config_(grid),

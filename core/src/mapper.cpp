@@ -105,16 +105,17 @@ class Mapper::Impl {
     const Eigen::Vector3d ray_m =
         grid_.geometric_centre_m(change.cell) + change.added.points.mean() - T_world_sensor.translation();
     double depth_m = T_world_sensor.linear().col(2).dot(ray_m);
-    Eigen::Vector3d normal = cell.direction(change.added);
-    if (cell.plane != kNoSlot) {
-      // Where the ray meets the plane: the same for all layers of cells that the noise is spread over.
-      const Plane& plane = planes_.plane(cell.plane);
-      normal = plane.normal();
-      const double slope = normal.dot(ray_m);
-      if (slope < 0.0) depth_m *= -plane.signed_distance_m(T_world_sensor.translation()) / slope;
+    if (cell.plane == kNoSlot) {
+      change.trust = range_trust(depth_m);
+      cell.add(change.added, cell.direction(change.added), change.trust);
+      return;
     }
+    // Where the ray meets the plane: the same for all layers of cells that the noise is spread over.
+    const Plane& plane = planes_.plane(cell.plane);
+    const double slope = plane.normal().dot(ray_m);
+    if (slope < 0.0) depth_m *= -plane.signed_distance_m(T_world_sensor.translation()) / slope;
     change.trust = range_trust(depth_m);
-    cell.add(change.added, normal, change.trust);
+    cell.add(change.added, plane.normal(), change.trust);
   }
 
   /// Beside the limits of the range the noise of the depth is cut off on one side, which shifts what is seen there by

@@ -22,7 +22,6 @@ double expected_scatter_m2(double centre_m, double cell_size_m, double variance_
 bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m) {
   constexpr double kPureSigmas = 1.5;
   constexpr double kFloor_m = 0.002;  // as planes.core_floor_m: scatter beside the sensor's
-  constexpr double kLeastSpread = 0.15;
   constexpr double kAngle_rad = 0.14;
   constexpr double kOffset_m = 0.02;
   constexpr double kSigmas = 3.0;
@@ -33,7 +32,7 @@ bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const P
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(evidence.covariance());
   const Eigen::Vector3d& spreads_m2 = solver.eigenvalues();
-  const double least_m = kLeastSpread * cell_size_m;
+  const double least_m = kLeastPatchSpread * cell_size_m;
   if (spreads_m2(0) > kPureSigmas * kPureSigmas * variance_m2 + kFloor_m * kFloor_m) return false;
   if (spreads_m2(1) < least_m * least_m) return false;
   const double mean_variance_m2 = variance_m2 / static_cast<double>(cell.evidence_count);

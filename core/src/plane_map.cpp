@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "angles.hpp"
 #include "sort_unique.hpp"
 
 namespace planemap {
 
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A plane looks for pieces across a gap when it has grown by a tenth, and at the latest after so many scans that touch
 /// it: its fit gets better without growth.

@@ -9,6 +9,10 @@ namespace planemap {
 /// Noise of more than this share of a cell's edge spreads a surface over several layers of cells.
 constexpr double kLayeredShare = 0.25;
 
+/// A cell's own points tell a normal where they spread by this share of its edge at least: a strip turns freely about
+/// its length.
+constexpr double kLeastPatchSpread = 0.15;
+
 /// Mean square distance to a plane, square metres, of the noise that a cell holds of it: all of it where the plane
 /// passes through the middle of the cell, its tail in the outer layers of what noise spreads over several cells. The
 /// second moment of a normal distribution between the cell's faces.

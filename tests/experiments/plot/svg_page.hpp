@@ -62,7 +62,4 @@ class SvgPage {
   std::string body_;
 };
 
-/// Text with what means something in XML replaced.
-std::string escaped(std::string_view text);
-
 }  // namespace planemap::experiments

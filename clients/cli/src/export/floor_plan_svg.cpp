@@ -10,6 +10,7 @@
 #include "export/colour.hpp"
 #include "export/floor_plan.hpp"
 #include "export/formats.hpp"
+#include "export/xml_text.hpp"
 
 namespace planemap::cli {
 namespace {
@@ -38,29 +39,6 @@ text{font-family:'DejaVu Sans',Helvetica,Arial,sans-serif;fill:#2b303a}
 .axis{stroke:#69707d;stroke-width:1.5;fill:none}
 </style>
 )";
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
-}
 
 /// Draws one floor plan. Plan coordinates are metres, y up; the page's are pixels, y down.
 class Drawing {
