@@ -47,12 +47,14 @@ class Assigner::Pass {
   Pass(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid)
       : kernels_(simd::kernels(core.simd)), sensor_(sensor), near_(grid) {}
 
-  PointCounts run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor);
+  PointCounts run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+                  const DividingPlanes& planes);
   /// Writes what the scan adds, and makes its cells working ones.
   void collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor, std::vector<CellChange>& changes) const;
 
  private:
-  void place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor, double focal_length_px);
+  void place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor, double focal_length_px,
+                    const DividingPlanes& planes);
   void read(UncertainGrid& grid, const DepthScan& scan, simd::PieceCounts& counts);
   void read(UncertainGrid& grid, const PointScan& scan, simd::PieceCounts& counts);
   void assign_chunk(UncertainGrid& grid);
@@ -67,9 +69,10 @@ class Assigner::Pass {
   NearCells near_;
 };
 
-PointCounts Assigner::Pass::run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+PointCounts Assigner::Pass::run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+                                const DividingPlanes& planes) {
   const auto* depth = std::get_if<DepthScan>(&scan);
-  place_sensor(grid, T_world_sensor, depth != nullptr ? depth->intrinsics.fx : sensor_.focal_length_px);
+  place_sensor(grid, T_world_sensor, depth != nullptr ? depth->intrinsics.fx : sensor_.focal_length_px, planes);
   simd::PieceCounts found;
   std::visit([&](const auto& s) { read(grid, s, found); }, scan);
   return {found.mapped + found.no_return + found.out_of_range + found.invalid, found.mapped, found.no_return,
@@ -77,13 +80,13 @@ PointCounts Assigner::Pass::run(UncertainGrid& grid, const Scan& scan, const Eig
 }
 
 void Assigner::Pass::place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor,
-                                  double focal_length_px) {
+                                  double focal_length_px, const DividingPlanes& planes) {
   const KinectModel model(sensor_, focal_length_px);
   const double per_m = 1.0 / grid.cell_size_m();
   const Eigen::Vector3d sensor_cells = T_world_sensor.translation() * per_m;
   const bool is_in_this_world = sensor_cells.cwiseAbs().maxCoeff() < kMaxCoordinateCells;
   const Eigen::Vector3d corner = is_in_this_world ? Eigen::Vector3d(sensor_cells.array().floor()) : sensor_cells;
-  near_.begin(is_in_this_world ? CellIndex(corner.cast<int>()) : CellIndex::Zero(), T_world_sensor.translation());
+  near_.begin(is_in_this_world ? CellIndex(corner.cast<int>()) : CellIndex::Zero(), T_world_sensor, planes);
   for (int w = 0; w < 3; ++w) {
     for (int k = 0; k < 3; ++k) {
       projection_.axis_cells[k][w] = static_cast<float>(T_world_sensor.linear()(w, k) * per_m);
@@ -143,6 +146,9 @@ void Assigner::Pass::assign_chunk(UncertainGrid& grid) {
     near_.find_candidates(grid, {chunk_.cell[0][at], chunk_.cell[1][at], chunk_.cell[2][at]}, run);
   }
   kernels_.assign(chunk_, runs_.data(), count, near_.candidates());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (runs_[i].divider_count > 0) kernels_.divide(chunk_, runs_[i], near_.dividers());
+  }
   kernels_.accumulate(chunk_, near_.accumulators());
 }
 
@@ -172,9 +178,10 @@ Assigner::Assigner(const CoreConfig& core, const SensorConfig& sensor, const Gri
     : pass_(std::make_unique<Pass>(core, sensor, grid)) {}
 Assigner::~Assigner() = default;
 
-PointCounts Assigner::assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor) {
+PointCounts Assigner::assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+                             const DividingPlanes& planes) {
   changes_.clear();
-  const PointCounts counts = pass_->run(grid, scan, T_world_sensor);
+  const PointCounts counts = pass_->run(grid, scan, T_world_sensor, planes);
   pass_->collect(grid, T_world_sensor.linear(), changes_);
   for (CellChange& change : changes_) {
     // One view direction for a cell and scan: it turns by a fraction of a degree within the cell.

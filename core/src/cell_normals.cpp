@@ -51,6 +51,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const Uncertai
       sum.add(Moments{1.0, centre, Symmetric3::outer(centre)});
     }
   }
+  if (!(sum.weight > 0.0)) return std::nullopt;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(sum.covariance());
   if (!(solver.eigenvalues()(1) > 1e-12)) return std::nullopt;  // a point or a line spans no plane
@@ -96,6 +97,7 @@ std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const Uncer
   gather(grid, ref);
   const auto elsewhere = [&](CellRef other) {
     const Cell& cell = grid.cell(other);
+    if (!cell.has_evidence()) return true;
     const Eigen::Vector3d shift = grid.geometric_centre_m(other) - origin;
     const double d_m = own->normal.dot(shift - own->centroid_m);
     return cell.evidence.unpacked().mean_square_distance(own->normal, d_m) >

@@ -10,6 +10,7 @@ MapperConfig preset(Preset which) {
   config.grid.density_threshold = 30;
   config.grid.clamp_centres = false;
   config.grid.view_side = false;
+  config.grid.second_surfaces = false;
   config.normals.fit = NormalFit::kCentres;
   config.normals.view_side = false;
   config.normals.flatness_sigmas = 0.0;
@@ -22,6 +23,7 @@ MapperConfig preset(Preset which) {
   config.planes.offset_test = false;
   config.planes.view_side = false;
   config.planes.adoption = false;
+  config.planes.splits = false;
   config.planes.bridge_gap_m = 0.0;
   config.planes.slab_sigmas = 0.0;
   config.planes.core_sigmas = 0.0;

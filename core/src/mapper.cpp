@@ -91,12 +91,16 @@ class Mapper::Impl {
   /// Fig. 3, lines 2 and 3: map the scan onto the grid, maintain the cells' statistics.
   void assign(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer, ScanReport& report) {
     const StageScope scope(observer, Stage::kAssign);
-    report.points = assigner_.assign(grid_, scan, T_world_sensor);
+    report.points = assigner_.assign(grid_, scan, T_world_sensor, dividing_planes());
     report.touched_cells = assigner_.changes().size();
     for (CellChange& change : assigner_.changes()) {
       planes_.detach(grid_, change.cell);
       add(change, T_world_sensor);
     }
+  }
+
+  DividingPlanes dividing_planes() const {
+    return {[this](PlaneSlot slot) { return planes_.dividing_plane(slot); }, planes_.pose_variance_m2()};
   }
 
   /// Adds what the scan saw to a cell.

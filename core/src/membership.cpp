@@ -1,6 +1,5 @@
 #include "planemap/membership.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,27 +18,15 @@ double expected_scatter_m2(double centre_m, double cell_size_m, double variance_
   return variance_m2 * (1.0 + (low * density(low) - high * density(high)) / share);
 }
 
-bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m) {
-  constexpr double kPureSigmas = 1.5;
-  constexpr double kFloor_m = 0.002;  // as planes.core_floor_m: scatter beside the sensor's
-  constexpr double kAngle_rad = 0.14;
-  constexpr double kOffset_m = 0.02;
+bool lies_aside(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m) {
+  constexpr double kOffset_m = 0.005;  // that a real sensor bends within a hand's breadth
   constexpr double kSigmas = 3.0;
+  if (!cell.has_evidence()) return false;
   const double variance_m2 = cell.evidence_variance_m2();
   const double noisy_m = 0.5 * kLayeredShare * cell_size_m;
   if (!(variance_m2 < noisy_m * noisy_m)) return false;
-  const Moments evidence = cell.evidence.unpacked();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(evidence.covariance());
-  const Eigen::Vector3d& spreads_m2 = solver.eigenvalues();
-  const double least_m = kLeastPatchSpread * cell_size_m;
-  if (spreads_m2(0) > kPureSigmas * kPureSigmas * variance_m2 + kFloor_m * kFloor_m) return false;
-  if (spreads_m2(1) < least_m * least_m) return false;
-  const double mean_variance_m2 = variance_m2 / static_cast<double>(cell.evidence_count);
-  const double angle_rad = std::acos(std::min(1.0, std::abs(solver.eigenvectors().col(0).dot(plane.normal()))));
-  if (angle_rad > kAngle_rad + kSigmas * std::sqrt(mean_variance_m2 / spreads_m2(1))) return true;
-  const double offset_m = std::abs(plane.signed_distance_m(centre_m + evidence.mean()));
-  return offset_m > kOffset_m + kSigmas * std::sqrt(mean_variance_m2);
+  const double offset_m = std::abs(plane.signed_distance_m(centre_m + cell.evidence.unpacked().mean()));
+  return offset_m > kOffset_m + kSigmas * std::sqrt(variance_m2 / static_cast<double>(cell.evidence_count));
 }
 
 }  // namespace planemap

@@ -1,15 +1,18 @@
 #include "near_cells.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "planemap/expected_distance.hpp"
 
 namespace planemap {
 
-void NearCells::begin(const CellIndex& base, const Eigen::Vector3d& origin_m) {
-  base_ = base;
-  origin_m_ = origin_m;
+void NearCells::begin(const CellIndex& base, const Eigen::Isometry3d& T_world_sensor, const DividingPlanes& planes) {
+  frame_ = {base, T_world_sensor, config_.cell_size_m, planes.pose_variance_m2};
+  planes_ = planes;
+  place_dividers_.clear();
+  dividers_.clear();
   table_.clear();
   cells_.clear();
   candidates_.clear();
@@ -17,17 +20,38 @@ void NearCells::begin(const CellIndex& base, const Eigen::Vector3d& origin_m) {
 
 void NearCells::find_candidates(UncertainGrid& grid, const CellIndex& cell, simd::Run& run) {
   std::uint32_t number = table_(cell.x(), cell.y(), cell.z());
-  if (number == CellTable::kNone) number = number_of(grid, grid.find_or_add(base_ + cell), cell);
+  if (number == CellTable::kNone) number = number_of(grid, grid.find_or_add(frame_.base + cell), cell);
   if (cells_[number].candidate_count == 0) list_candidates(grid, number, cell);
   run.first_candidate = cells_[number].first_candidate;
   run.candidate_count = cells_[number].candidate_count;
+  run.first_divider = cells_[number].first_divider;
+  run.divider_count = cells_[number].divider_count;
   std::copy_n(accumulators_[number].centre_cells, 3, run.centre_cells);
 }
 
 std::uint32_t NearCells::number_of(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
-  std::uint32_t& number = table_(cell.x(), cell.y(), cell.z());
-  if (number != CellTable::kNone) return number;
-  number = static_cast<std::uint32_t>(cells_.size());
+  if (const std::uint32_t known = table_(cell.x(), cell.y(), cell.z()); known != kNone) return known;
+  const std::uint32_t number = add(grid, ref, cell);
+  table_(cell.x(), cell.y(), cell.z()) = number;
+  if (const std::uint16_t second = grid.cell(ref).second; second != Cell::kNoSecond) {
+    add_second(grid, number, {ref.block, second}, cell);
+  }
+  return number;
+}
+
+void NearCells::add_second(const UncertainGrid& grid, std::uint32_t number, CellRef second, const CellIndex& cell) {
+  const std::uint32_t other = add(grid, second, cell);
+  const Plane* first_plane = planes_.of(grid.cell(cells_[number].ref).plane);
+  const Plane* second_plane = planes_.of(grid.cell(second).plane);
+  cells_[number].second = other;
+  if (first_plane == nullptr && second_plane == nullptr) return;  // Eq. 7 alone tells them apart
+  cells_[number].own_divider = cells_[other].own_divider = static_cast<std::uint32_t>(place_dividers_.size());
+  place_dividers_.push_back({{static_cast<std::int32_t>(number), static_cast<std::int32_t>(other)},
+                             {scan_plane(first_plane, frame_), scan_plane(second_plane, frame_)}});
+}
+
+std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
+  const auto number = static_cast<std::uint32_t>(cells_.size());
   NearCell& near = cells_.emplace_back();
   if (accumulators_.size() < cells_.size()) accumulators_.resize(2 * cells_.size());
   simd::Accumulator& accumulator = accumulators_[number];
@@ -46,9 +70,22 @@ std::uint32_t NearCells::number_of(const UncertainGrid& grid, CellRef ref, const
   return number;
 }
 
+void NearCells::list_dividers(NearCell& near) {
+  near.first_divider = static_cast<std::uint32_t>(dividers_.size());
+  for (const Rival& rival : rivals_) {
+    const std::uint32_t number = cells_[rival.target].own_divider;
+    if (number == kNone) continue;
+    const simd::Divider& divider = place_dividers_[number];
+    const auto is_same = [&](const simd::Divider& other) { return other.target[0] == divider.target[0]; };
+    if (std::none_of(dividers_.begin() + near.first_divider, dividers_.end(), is_same)) dividers_.push_back(divider);
+  }
+  near.divider_count = static_cast<std::uint32_t>(dividers_.size()) - near.first_divider;
+}
+
 void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
   rivals_.clear();
-  if (cells_[number].has_points) {
+  const std::uint32_t second = cells_[number].second;
+  if (cells_[number].has_points || (second != kNone && cells_[second].has_points)) {
     gather(grid, number, cell);
     drop_losers();
   } else {
@@ -56,6 +93,7 @@ void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const
   }
   cells_[number].first_candidate = static_cast<std::uint32_t>(candidates_.size());
   cells_[number].candidate_count = static_cast<std::uint32_t>(rivals_.size());
+  list_dividers(cells_[number]);
   for (const Rival& rival : rivals_) {
     const Eigen::Vector3f slope = (-2.0 * rival.place_cells).cast<float>();
     candidates_.push_back({{slope.x(), slope.y(), slope.z()},
@@ -64,10 +102,13 @@ void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const
   }
 }
 
-void NearCells::gather(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
-  const Eigen::Vector3f view = (origin_m_ - grid.geometric_centre_m(base_ + cell)).cast<float>();
+void NearCells::gather(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
+  const Eigen::Vector3f view =
+      (frame_.T_world_sensor.translation() - grid.geometric_centre_m(frame_.base + cell)).cast<float>();
+  open_second(grid, number, cell, view);
   grid.for_each_neighbour(cells_[number].ref, 1, [&](CellRef other_ref, const CellIndex& step) {
-    const std::uint32_t target = number_of(grid, other_ref, cell + step);
+    std::uint32_t target = number_of(grid, other_ref, cell + step);
+    if (grid.cell(other_ref).is_second) target = cells_[target].second;
     const NearCell& other = cells_[target];
     if (!other.has_points) return;
     // The faces of a thin wall: a cell that was seen from the other side does not attract these points.
@@ -75,6 +116,17 @@ void NearCells::gather(const UncertainGrid& grid, std::uint32_t number, const Ce
     const Eigen::Vector3d place = other.centre_cells + step.cast<double>();
     rivals_.push_back({place, place.squaredNorm() + other.variance_cells2, target});
   });
+}
+
+/// Both faces of a sheet may lie in one cell: what is seen of it from behind is of its other face.
+void NearCells::open_second(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell,
+                            const Eigen::Vector3f& view) {
+  if (!config_.second_surfaces || !config_.view_side || cells_[number].second != kNone) return;
+  if (!cells_[number].has_points || cells_[number].view.dot(view) >= 0.0F) return;
+  const CellRef ref = cells_[number].ref;
+  const Plane* plane = planes_.of(grid.cell(ref).plane);
+  if (plane == nullptr || plane->signed_distance_m(frame_.T_world_sensor.translation()) >= 0.0) return;
+  add_second(grid, number, grid.find_or_add_second(ref), cell);
 }
 
 void NearCells::drop_losers() {

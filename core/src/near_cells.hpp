@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cell_table.hpp"
+#include "divider.hpp"
 #include "simd/point_kernels.hpp"
 
 namespace planemap {
@@ -19,14 +20,16 @@ class NearCells {
 
   /// Forgets the last scan.
   /// @param base      the cell that the sensor is in; all places count from it
-  /// @param origin_m  the sensor, world frame
-  void begin(const CellIndex& base, const Eigen::Vector3d& origin_m);
+  /// @param T_world_sensor  the sensor's pose
+  /// @param planes          of the cells' labels
+  void begin(const CellIndex& base, const Eigen::Isometry3d& T_world_sensor, const DividingPlanes& planes);
 
   /// Fills in the run's cell and candidates. A cell that the grid does not have is made.
   /// @param cell  that the run's points lie in, from the base
   void find_candidates(UncertainGrid& grid, const CellIndex& cell, simd::Run& run);
 
   const simd::Candidate* candidates() const { return candidates_.data(); }
+  const simd::Divider* dividers() const { return dividers_.data(); }
   /// By target, as the candidates name them.
   simd::Accumulator* accumulators() { return accumulators_.data(); }
   std::size_t size() const { return cells_.size(); }
@@ -42,6 +45,10 @@ class NearCells {
     bool has_points = false;
     std::uint32_t first_candidate = 0;
     std::uint32_t candidate_count = 0;  ///< 0: not listed yet
+    std::uint32_t first_divider = 0;    ///< of the places that the candidates share with others
+    std::uint32_t divider_count = 0;
+    std::uint32_t second = kNone;       ///< number of the other cell at its place
+    std::uint32_t own_divider = kNone;  ///< of its place, in place_dividers_; kNone: not divided, or Eq. 7 does it
   };
   /// A candidate for the cell at hand.
   struct Rival {
@@ -50,18 +57,26 @@ class NearCells {
     std::uint32_t target;
   };
 
+  static constexpr std::uint32_t kNone = CellTable::kNone;
+
   std::uint32_t number_of(const UncertainGrid& grid, CellRef ref, const CellIndex& cell);
+  std::uint32_t add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell);
+  void add_second(const UncertainGrid& grid, std::uint32_t number, CellRef second, const CellIndex& cell);
+  void list_dividers(NearCell& near);
   void list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell);
-  void gather(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell);
+  void gather(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell);
+  void open_second(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell, const Eigen::Vector3f& view);
   void drop_losers();
 
   GridConfig config_;
-  CellIndex base_ = CellIndex::Zero();
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
+  ScanFrame frame_{};
+  DividingPlanes planes_;
   CellTable table_;
   std::vector<NearCell> cells_;
   std::vector<simd::Accumulator> accumulators_;  ///< beside cells_
   std::vector<simd::Candidate> candidates_;
+  std::vector<simd::Divider> place_dividers_;
+  std::vector<simd::Divider> dividers_;  ///< of the cells one after another, as their candidates
   std::vector<Rival> rivals_;
 };
 

@@ -54,6 +54,7 @@ bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const Plan
   }
   if (!config_.offset_test) return true;
   if (!(a.weight() > 0.0 && b.weight() > 0.0)) return false;
+  if (are_creased(a, fit_a, b, fit_b)) return false;
   // How far the smaller one's evidence lies from the larger one's plane, beyond what it scatters about its own.
   const bool a_is_smaller = a.weight() < b.weight();
   const PlaneStatistics& smaller = a_is_smaller ? a : b;
@@ -63,10 +64,19 @@ bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const Plan
   return excess_m2 < max_offset_m * max_offset_m;
 }
 
-std::vector<PlaneSlot> PlaneMap::touching(const UncertainGrid& grid, const LocalPlane& local) const {
+bool PlaneMap::are_creased(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b,
+                           const PlaneFit& fit_b) const {
+  if (!config_.splits || !is_pure(a, fit_a) || !is_pure(b, fit_b)) return false;
+  constexpr double kSigmas = 3.0;
+  const double sigma_rad = std::sqrt(fit_a.tilt_1_rad2 + fit_b.tilt_1_rad2);
+  const double angle_rad = std::acos(std::min(1.0, fit_a.plane.normal().dot(fit_b.plane.normal())));
+  return angle_rad > config_.crease_angle_deg * kRadPerDeg + kSigmas * sigma_rad;
+}
+
+std::vector<PlaneSlot> PlaneMap::touching(const UncertainGrid& grid, const std::vector<CellRef>& cells) const {
   std::vector<PlaneSlot> found;
   PlaneSlot last = kNoSlot;
-  for (const CellRef ref : local.cells) {
+  for (const CellRef ref : cells) {
     grid.for_each_neighbour(ref, 1, [&](CellRef other) {
       const PlaneSlot slot = grid.cell(other).plane;
       if (slot == kNoSlot || slot == last) return;
@@ -80,7 +90,7 @@ std::vector<PlaneSlot> PlaneMap::touching(const UncertainGrid& grid, const Local
 
 PlaneSlot PlaneMap::absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report) {
   std::vector<PlaneSlot> similar;
-  for (const PlaneSlot slot : touching(grid, local)) {
+  for (const PlaneSlot slot : touching(grid, local.cells)) {
     const State& global = state(slot);
     if (agree(local.statistics, local.fit, global.statistics, global.fit, max_angle_rad_, config_.plane_offset_m)) {
       similar.push_back(slot);
@@ -132,34 +142,56 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
   return survivor;
 }
 
-bool PlaneMap::is_pure(const LocalPlane& local) const {
+bool PlaneMap::is_pure(const PlaneStatistics& statistics, const PlaneFit& fit) const {
   // A cell across a corner scatters about its chord by a tenth of its edge: only less noise than that tells it from one
   // that is flat.
   constexpr double kMostNoise = 0.075;
   constexpr double kPureSigmas = 1.2;
-  const double variance_m2 = local.statistics.core_point_count() / local.statistics.weight() + pose_variance_m2_;
+  const double variance_m2 = statistics.evidence_variance_m2() + pose_variance_m2_;
   const double most_m = kMostNoise * grid_config_.cell_size_m;
   return variance_m2 < most_m * most_m &&
-         local.fit.residual_m2 < kPureSigmas * kPureSigmas * variance_m2 + config_.core_floor_m * config_.core_floor_m;
+         fit.residual_m2 < kPureSigmas * kPureSigmas * variance_m2 + config_.core_floor_m * config_.core_floor_m;
+}
+
+bool PlaneMap::is_nearer(const UncertainGrid& grid, CellRef ref, const PlaneFit& a, const PlaneFit& b) const {
+  const Moments evidence = grid.cell(ref).evidence.unpacked();
+  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+  const auto scatter_m2 = [&](const PlaneFit& fit) {
+    return evidence.mean_square_distance(fit.plane.normal(), fit.plane.signed_distance_m(centre_m));
+  };
+  return scatter_m2(a) < scatter_m2(b);
+}
+
+std::vector<CellRef> PlaneMap::free_cells(const UncertainGrid& grid, const LocalPlane& local) const {
+  std::vector<CellRef> free;
+  PlaneSlot last = kNoSlot;
+  bool creased = false;
+  for (const CellRef ref : local.cells) {
+    const PlaneSlot slot = grid.cell(ref).plane;
+    if (slot != last && slot != kNoSlot) {
+      creased = are_creased(local.statistics, local.fit, state(slot).statistics, state(slot).fit);
+    }
+    last = slot;
+    if (slot == kNoSlot || (creased && is_nearer(grid, ref, local.fit, state(slot).fit))) free.push_back(ref);
+  }
+  return free;
 }
 
 void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
-  std::vector<CellRef> free;
-  for (const CellRef ref : local.cells) {
-    if (grid.cell(ref).plane == kNoSlot) free.push_back(ref);
-  }
+  const std::vector<CellRef> free = free_cells(grid, local);
   if (static_cast<double>(free.size()) < config_.min_cells) return;
   if (local.fit.width_m() < config_.min_width_cells * grid.cell_size_m()) return;
   // A strip of hardly more than one cell's width leans to whatever is beside it, unless its cells hold nothing else.
-  if (local.fit.width_m() < config_.strip_cells * grid.cell_size_m() && !is_pure(local)) return;
+  if (local.fit.width_m() < config_.strip_cells * grid.cell_size_m() && !is_pure(local.statistics, local.fit)) return;
   const auto slot = static_cast<PlaneSlot>(states_.size());
   states_.push_back(std::make_unique<State>(grid.geometric_centre_m(local.cells.front())));
   State& plane = state(slot);
   plane.fit = local.fit;
   plane.first_seen_utime = utime;
   plane.last_seen_utime = utime;
-  for (const CellRef ref : free) join(grid, ref, slot);
+  for (const CellRef ref : free) take(grid, ref, slot);
   refit(slot);
+  born_.push_back(slot);
   ++report.new_planes;
 }
 
@@ -169,13 +201,12 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
     start(grid, local, utime, report);
     return;
   }
-  for (const CellRef ref : local.cells) {
+  for (const CellRef ref : free_cells(grid, local)) {
     const Cell& cell = grid.cell(ref);
-    if (cell.plane != kNoSlot) continue;
-    const double distance_m = std::abs(state(target).fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
+    if (cell.plane == target || is_sibling(grid, ref, target)) continue;
+    const double distance_m = std::abs(state(target).fit.plane.signed_distance_m(grid.middle_m(ref)));
     if (config_.offset_test && distance_m > band_m(cell, state(target).fit)) continue;
-    if (is_split_off(grid, ref, target)) continue;
-    join(grid, ref, target);
+    take(grid, ref, target);
   }
   refit(target);
   state(target).last_seen_utime = std::max(state(target).last_seen_utime, utime);
@@ -186,7 +217,12 @@ GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> lo
   GlobalReport report;
   take_pose(scan);
   for (const LocalPlane& plane : local) merge_local(grid, plane, scan.utime, report);
-  if (config_.adoption) adopt(grid, changes);
+  if (config_.adoption) {
+    adopt(grid, changes);
+    for (const PlaneSlot slot : born_) settle(grid, slot, report);
+  }
+  born_.clear();
+  if (grid_config_.second_surfaces) open_seconds(grid, changes);
   if (config_.bridge_gap_m > 0.0) bridge(grid, report);
   dissolve_small(grid, report);
   for (const PlaneSlot slot : touched_) {
@@ -232,7 +268,7 @@ void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> 
 
 PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const {
   const Cell& cell = grid.cell(ref);
-  const Eigen::Vector3d centre_m = grid.virtual_centre_m(ref);
+  const Eigen::Vector3d centre_m = grid.middle_m(ref);
   const double own_cells = cell.plane == kNoSlot ? 0.0 : static_cast<double>(state(cell.plane).statistics.cell_count());
   // Near an edge a normal may be wrong by 25 degrees, but not by a right angle.
   constexpr double kAdoptingCosine = 0.7;
@@ -240,17 +276,16 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const
   double best_distance_m = std::numeric_limits<double>::infinity();
   grid.for_each_neighbour(ref, 1, [&](CellRef other) {
     const PlaneSlot slot = grid.cell(other).plane;
-    if (slot == kNoSlot || slot == cell.plane || slot == best) return;
+    if (slot == kNoSlot || slot == cell.plane || slot == best || is_sibling(grid, ref, slot)) return;
     const State& plane = state(slot);
     const Eigen::Vector3d& normal = plane.fit.plane.normal();
     if (config_.view_side && normal.dot(cell.sums.view.cast<double>()) <= 0.0) return;
     if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < kAdoptingCosine) return;
     const double distance_m = std::abs(plane.fit.plane.signed_distance_m(centre_m));
     if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) return;
-    if (is_split_off(grid, ref, slot)) return;
     if (distance_m > config_.cell_offset_m || cell.plane != kNoSlot) {
       // A layer of the plane's slab: the plane's own cells lie behind or before it, not beside it.
-      const Eigen::Vector3d step = grid.virtual_centre_m(other) - centre_m;
+      const Eigen::Vector3d step = grid.middle_m(other) - centre_m;
       if (std::abs(normal.dot(step)) < 0.5 * step.norm()) return;
     }
     if (cell.plane != kNoSlot && static_cast<double>(plane.statistics.cell_count()) < config_.slab_ratio * own_cells) {
@@ -269,8 +304,32 @@ void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes) {
     if (cell.plane != kNoSlot && !(config_.slab_sigmas > 0.0)) continue;
     const PlaneSlot slot = best_neighbour(grid, change.cell);
     if (slot == kNoSlot) continue;
-    if (cell.plane != kNoSlot) leave(grid, change.cell);
-    join(grid, change.cell, slot);
+    take(grid, change.cell, slot);
+  }
+}
+
+/// A new plane takes in what lay around it without a plane, and merges with what it thereby reaches: nobody may look
+/// there again.
+void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report) {
+  if (!states_[slot]) return;
+  for (std::size_t next = 0; next < state(slot).cells.size(); ++next) {
+    std::vector<CellRef> around;
+    grid.for_each_neighbour(state(slot).cells[next], 1, [&](CellRef other) {
+      const Cell& cell = grid.cell(other);
+      if (cell.plane == kNoSlot && cell.sums.count > grid_config_.density_threshold) around.push_back(other);
+    });
+    for (const CellRef ref : around) {
+      if (best_neighbour(grid, ref) == slot) join(grid, ref, slot);
+    }
+  }
+  refit(slot);
+  for (const PlaneSlot other : touching(grid, state(slot).cells)) {
+    if (other == slot || !states_[other] || !states_[slot]) continue;
+    const State& a = state(slot);
+    const State& b = state(other);
+    if (!agree(a.statistics, a.fit, b.statistics, b.fit, max_angle_rad_, config_.plane_offset_m)) continue;
+    slot = merge_planes(grid, slot, other);
+    ++report.merged_planes;
   }
 }
 

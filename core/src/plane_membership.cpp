@@ -23,10 +23,19 @@ double PlaneMap::band_m(const Cell& cell, const PlaneFit& fit) const {
   return std::max(config_.cell_offset_m, config_.slab_sigmas * std::sqrt(variance_m2));
 }
 
+const Plane* PlaneMap::dividing_plane(PlaneSlot slot) const {
+  constexpr int kEstablished = 2;  // times what starts a plane
+  if (slot == kNoSlot || !states_[slot]) return nullptr;
+  const State& plane = state(slot);
+  if (static_cast<double>(plane.statistics.cell_count()) < kEstablished * config_.min_cells) return nullptr;
+  return &plane.fit.plane;
+}
+
 float PlaneMap::member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const {
   const Cell& cell = grid.cell(ref);
   const Eigen::Vector3d& normal = fit.plane.normal();
   if (!(config_.core_sigmas > 0.0)) return 1.0F;
+  if (!cell.has_evidence()) return 0.0F;
   // A cell at an edge also holds points of another surface: it belongs to the plane but must not shape it. Its points
   // scatter about the plane by more than their errors, and its normal turns away.
   const double d_m = fit.plane.signed_distance_m(grid.geometric_centre_m(ref));
@@ -81,6 +90,11 @@ void PlaneMap::join(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
   mark_changed(slot);
 }
 
+void PlaneMap::take(UncertainGrid& grid, CellRef ref, PlaneSlot slot) {
+  if (grid.cell(ref).plane != kNoSlot) leave(grid, ref);
+  join(grid, ref, slot);
+}
+
 void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
   Cell& cell = grid.writable(ref);
   const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
@@ -88,11 +102,6 @@ void PlaneMap::leave(UncertainGrid& grid, CellRef ref) {
   coarse_.remove(centre_m, cell.plane);
   mark_changed(cell.plane);
   cell.plane = kNoSlot;
-}
-
-bool PlaneMap::is_split_off(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const {
-  return config_.splits &&
-         is_other_surface(grid.cell(ref), grid.geometric_centre_m(ref), state(slot).fit.plane, grid.cell_size_m());
 }
 
 void PlaneMap::detach(const UncertainGrid& grid, CellRef ref) {
@@ -108,11 +117,10 @@ void PlaneMap::attach(UncertainGrid& grid, CellRef ref) {
   plane.statistics.add(cell, grid.geometric_centre_m(ref));
   mark_changed(cell.plane);
   if (!config_.offset_test) return;
-  const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.virtual_centre_m(ref)));
+  const double distance_m = std::abs(plane.fit.plane.signed_distance_m(grid.middle_m(ref)));
   const bool side = !config_.view_side || plane.fit.plane.normal().dot(cell.sums.view.cast<double>()) > 0.0;
   constexpr double kHysteresis = 1.5;  // so that a cell on the limit does not come and go
-  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side || is_split_off(grid, ref, cell.plane))
-    leave(grid, ref);
+  if (distance_m > kHysteresis * band_m(cell, plane.fit) || !side) leave(grid, ref);
 }
 
 }  // namespace planemap

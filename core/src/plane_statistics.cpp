@@ -30,6 +30,7 @@ void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre
   cells_ += sign;
   points_ += sign * n;
   if (cell.plane_weight > 0.0F) core_points_ += sign * n;
+  evidence_count_ += sign * static_cast<double>(cell.plane_weight) * static_cast<double>(cell.evidence_count);
 }
 
 void PlaneStatistics::add(const PlaneStatistics& other) {
@@ -43,6 +44,7 @@ void PlaneStatistics::add(const PlaneStatistics& other) {
   cells_ += other.cells_;
   points_ += other.points_;
   core_points_ += other.core_points_;
+  evidence_count_ += other.evidence_count_;
 }
 
 std::optional<PlaneFit> PlaneStatistics::fit(bool pooled) const {

@@ -8,7 +8,7 @@ void PlaneMap::wear_away(UncertainGrid& grid, std::span<const CellRef> cells) {
       ++state(slot).worn_cells;
       leave(grid, ref);
     }
-    grid.writable(ref) = Cell{};
+    grid.writable(ref).begin_anew();
     // The normals around were fitted to these points, too: they are fitted again with the next points there.
     grid.for_each_neighbour(ref, 1, [&](CellRef other) {
       if (grid.cell(other).normal_count > 0.0F) grid.writable(other).normal_count = 0.0F;

@@ -39,6 +39,22 @@ CellRef UncertainGrid::find_or_add(const CellIndex& index) {
   return {slot, static_cast<std::uint32_t>(ordinal)};
 }
 
+CellRef UncertainGrid::find_or_add_second(CellRef ref) {
+  Block& block = writable_block(ref.block);
+  const std::size_t before = block.size();
+  const int ordinal = block.find_or_add_second(static_cast<int>(ref.ordinal));
+  cell_count_ += block.size() - before;
+  return {ref.block, static_cast<std::uint32_t>(ordinal)};
+}
+
+std::optional<CellRef> UncertainGrid::sibling(CellRef ref) const {
+  const Block& block = *blocks_[ref.block];
+  const Cell& own = block.cell(ref.ordinal);
+  if (own.is_second) return CellRef{ref.block, static_cast<std::uint32_t>(block.find(block.place(ref.ordinal)))};
+  if (own.second == Cell::kNoSecond) return std::nullopt;
+  return CellRef{ref.block, own.second};
+}
+
 std::optional<std::uint32_t> UncertainGrid::find_block(const BlockIndex& index) const {
   const std::uint32_t slot = block_slot(index);
   if (slot == kNoBlock) return std::nullopt;

@@ -120,13 +120,20 @@ void Wear::look_at(const UncertainGrid& grid, std::uint32_t slot, const View& vi
     const int place = block.place(ordinal);
     const Eigen::Vector3f p = first + step * cell_at(BlockIndex::Zero(), place).cast<float>();
     if (!is_before_surface(p)) continue;
-    const Cell& cell = block.cell(ordinal);
-    if (!(cell.sums.count > 0.0) || cell.working != Cell::kNotWorking) continue;  // empty, or just seen
+    const Cell& first_cell = block.cell(ordinal);
+    if (first_cell.is_second) continue;  // it goes with the other cell of its place
+    const bool has_second = first_cell.second != Cell::kNoSecond;
+    const Cell& second_cell = has_second ? block.cell(first_cell.second) : first_cell;
+    const Cell& cell = first_cell.sums.count > 0.0 ? first_cell : second_cell;
+    if (!(cell.sums.count > 0.0)) continue;
+    if (first_cell.working != Cell::kNotWorking || second_cell.working != Cell::kNotWorking) continue;  // just seen
     if (!is_seen_through(cell, p, axes)) continue;
     std::uint8_t& parts = seen_through(slot, place);
     const std::uint32_t sum = parts + credit;
     parts = static_cast<std::uint8_t>(sum < kParts ? sum : 0);
-    if (sum >= kParts) found_.push_back({slot, ordinal});
+    if (sum < kParts) continue;
+    found_.push_back({slot, ordinal});
+    if (has_second) found_.push_back({slot, first_cell.second});
   }
 }
 

@@ -36,52 +36,37 @@ TEST(ExpectedScatter, OfALayerIsThatOfTheTailThatItHolds) {
   EXPECT_NEAR(expected_scatter_m2(-kCell_m, kCell_m, 1.6e-3) / (sums[2] / counts[2]), 1.0, 0.01);
 }
 
-/// A cell about the origin that holds a patch through its centre, `offset_m` off it along the normal, with noise.
-Cell cell_with(const Vector3d& normal, double offset_m, double sigma_m, const Vector3d& second_normal = {0, 0, 0}) {
+/// A cell about the origin with a level patch through its centre.
+Cell level_cell(double sigma_m) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> place(-0.5 * kCell_m, 0.5 * kCell_m);
   std::normal_distribution<double> noise(0.0, sigma_m);
   ScanSums scan;
   for (int i = 0; i < 2000; ++i) {
-    const bool second = second_normal.norm() > 0.5 && i % 2 == 0;
-    const Vector3d n = second ? second_normal : normal;
-    Vector3d p(place(random), place(random), place(random));
-    p += (offset_m + noise(random) - n.dot(p)) * n;
+    const Vector3d p(place(random), place(random), noise(random));
     scan.points.add(Moments{1.0, p, Symmetric3::outer(p)});
     scan.error_m2 += Vector3d::Constant(sigma_m * sigma_m);
   }
   Cell cell;
-  cell.add(scan, normal);
+  cell.add(scan, Vector3d::UnitZ());
   return cell;
 }
 
-bool is_other(const Cell& cell, const Vector3d& normal, double distance_m) {
-  return is_other_surface(cell, Vector3d::Zero(), Plane::through(-distance_m * normal, normal), kCell_m);
+/// Whether a level cell lies aside of a level plane that is so far above it.
+bool is_aside(const Cell& cell, double above_m) {
+  return lies_aside(cell, Vector3d::Zero(), Plane::through({0.0, 0.0, above_m}, Vector3d::UnitZ()), kCell_m);
 }
 
-TEST(OtherSurface, ACellOfThePlaneIsNot) {
-  EXPECT_FALSE(is_other(cell_with(Vector3d::UnitZ(), 0.0, 0.004), Vector3d::UnitZ(), 0.0));
+TEST(LiesAside, FromHalfACentimetreOnAndTheErrorOfTheMean) {
+  const Cell cell = level_cell(0.004);  // its mean is known to 0.1 mm
+  EXPECT_FALSE(is_aside(cell, 0.0));
+  EXPECT_FALSE(is_aside(cell, 0.0045));
+  EXPECT_TRUE(is_aside(cell, 0.006));
+  EXPECT_TRUE(is_aside(cell, -0.006));
 }
 
-TEST(OtherSurface, IsOneThatTurnsAwayByTwelveDegreesButNotByFour) {
-  const auto turned = [](double degrees) {
-    return Vector3d(std::sin(degrees * M_PI / 180.0), 0.0, std::cos(degrees * M_PI / 180.0));
-  };
-  EXPECT_TRUE(is_other(cell_with(turned(12.0), 0.0, 0.004), Vector3d::UnitZ(), 0.0));
-  EXPECT_FALSE(is_other(cell_with(turned(4.0), 0.0, 0.004), Vector3d::UnitZ(), 0.0));
-}
-
-TEST(OtherSurface, IsOneThatLiesThreeCentimetresOffButNotOneCentimetre) {
-  EXPECT_TRUE(is_other(cell_with(Vector3d::UnitZ(), 0.0, 0.004), Vector3d::UnitZ(), 0.03));
-  EXPECT_FALSE(is_other(cell_with(Vector3d::UnitZ(), 0.0, 0.004), Vector3d::UnitZ(), 0.01));
-}
-
-TEST(OtherSurface, ACellAtAnEdgeIsNotSure) {
-  EXPECT_FALSE(is_other(cell_with(Vector3d::UnitX(), 0.0, 0.004, Vector3d::UnitZ()), Vector3d::UnitZ(), 0.0));
-}
-
-TEST(OtherSurface, NoiseThatSpreadsOverCellsTellsNothing) {
-  EXPECT_FALSE(is_other(cell_with(Vector3d::UnitZ(), 0.0, 0.02), Vector3d::UnitZ(), 0.03));
+TEST(LiesAside, NoiseThatSpreadsOverCellsTellsNothing) {
+  EXPECT_FALSE(is_aside(level_cell(0.02), 0.03));
 }
 
 }  // namespace

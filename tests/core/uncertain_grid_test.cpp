@@ -97,5 +97,47 @@ TEST(UncertainGrid, UnchangedBlocksStayShared) {
   EXPECT_NE(before.at(1), after.at(1));
 }
 
+TEST(UncertainGrid, APlaceMayHaveASecondCell) {
+  UncertainGrid grid(0.08);
+  const CellRef first = grid.find_or_add({7, -1, 3});
+  EXPECT_FALSE(grid.sibling(first));
+  const CellRef second = grid.find_or_add_second(first);
+  EXPECT_NE(first, second);
+  EXPECT_EQ(grid.find_or_add_second(first), second);
+  EXPECT_EQ(grid.cell_count(), 2U);
+  EXPECT_EQ(grid.index_of(second), CellIndex(7, -1, 3));
+  EXPECT_EQ(grid.sibling(first), second);
+  EXPECT_EQ(grid.sibling(second), first);
+  EXPECT_EQ(grid.find({7, -1, 3}), first);
+  EXPECT_TRUE(grid.cell(second).is_second);
+}
+
+TEST(UncertainGrid, NeighboursComeWithTheirSecondCellsRightBehindThem) {
+  UncertainGrid grid(0.08);
+  const CellRef home = grid.find_or_add({0, 0, 0});
+  const CellRef beside = grid.find_or_add({-1, 0, 0});
+  const CellRef behind = grid.find_or_add_second(beside);
+  const CellRef own = grid.find_or_add_second(home);
+  std::vector<CellRef> seen;
+  grid.for_each_neighbour(own, 1, [&](CellRef ref) { seen.push_back(ref); });
+  EXPECT_EQ(seen, (std::vector<CellRef>{beside, behind, home, own}));
+}
+
+TEST(Cell, BegunAnewKeepsItsPlaceAndItsLabel) {
+  UncertainGrid grid(0.08);
+  const CellRef first = grid.find_or_add({0, 0, 0});
+  const CellRef second = grid.find_or_add_second(first);
+  Cell& cell = grid.writable(second);
+  cell.sums.count = 5.0;
+  cell.normal = Eigen::Vector3f::UnitX();
+  cell.plane = 4;
+  cell.begin_anew();
+  EXPECT_EQ(cell.sums.count, 0.0);
+  EXPECT_FALSE(cell.has_normal());
+  EXPECT_EQ(cell.plane, 4U);
+  EXPECT_EQ(grid.sibling(second), first);
+  EXPECT_EQ(grid.sibling(first), second);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -2,14 +2,23 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <planemap/cell.hpp>
 #include <planemap/config.hpp>
+#include <planemap/plane.hpp>
 #include <planemap/scan.hpp>
 #include <planemap/uncertain_grid.hpp>
 #include <vector>
 
 namespace planemap {
+
+/// The planes that tell the points of two cells at one place apart.
+struct DividingPlanes {
+  /// The plane of a label; nullptr: none that is known well enough.
+  std::function<const Plane*(PlaneSlot)> of = [](PlaneSlot) { return nullptr; };
+  double pose_variance_m2 = 0.0;  ///< of a point's distance to its plane, by the error of the scan's pose
+};
 
 /// What one scan adds to one cell; it has not been added yet.
 struct CellChange {
@@ -36,7 +45,8 @@ class Assigner {
 
   /// Assigns the scan. The grid gains empty cells but no evidence: that is in changes(), in an order that depends on
   /// the scan and the grid alone, and each changed cell's `working` is its place there until finish().
-  PointCounts assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor);
+  PointCounts assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+                     const DividingPlanes& planes = {});
   std::vector<CellChange>& changes() { return changes_; }
   const std::vector<CellChange>& changes() const { return changes_; }
   /// Ends the scan: no cell is working any more. changes() stay until the next scan.

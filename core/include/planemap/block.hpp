@@ -52,6 +52,8 @@ class Block {
   }
   /// Ordinal of the cell at a place, which is made where there was none.
   int find_or_add(int place);
+  /// Ordinal of the other cell at the place of a cell, which is made where there was none.
+  int find_or_add_second(int ordinal);
 
  private:
   static constexpr std::uint16_t kAbsent = 0xffff;
@@ -70,6 +72,16 @@ inline int Block::find_or_add(int place) {
     places_.push_back(static_cast<std::uint16_t>(place));
   }
   return ordinal;
+}
+
+inline int Block::find_or_add_second(int ordinal) {
+  const auto first = static_cast<std::size_t>(ordinal);
+  if (cells_[first].second == Cell::kNoSecond) {
+    cells_[first].second = static_cast<std::uint16_t>(cells_.size());
+    cells_.emplace_back().is_second = true;
+    places_.push_back(places_[first]);
+  }
+  return cells_[first].second;
 }
 
 }  // namespace planemap

@@ -54,6 +54,7 @@ constexpr PlaneSlot kNoSlot = 0;
 /// What the map knows of one cube of space.
 struct Cell {
   static constexpr std::uint32_t kNotWorking = 0xffffffff;
+  static constexpr std::uint16_t kNoSecond = 0xffff;
 
   CellSums sums;
   /// The points as evidence of a plane: their full second moment, each weighted by 1 / sigma^2 along the normal of its
@@ -69,6 +70,25 @@ struct Cell {
   PlaneSlot plane = kNoSlot;
   std::uint32_t working = kNotWorking;  ///< place in the working set while a scan is assigned
 
+  std::uint16_t second = kNoSecond;  ///< ordinal, in the same block, of the cell with this one's other surface
+  bool is_second = false;            ///< this is such a cell
+
+  /// Forgets its points, and all that was made of them, but for its label.
+  void begin_anew() {
+    Cell fresh;
+    fresh.plane = plane;
+    fresh.working = working;
+    fresh.second = second;
+    fresh.is_second = is_second;
+    *this = fresh;
+  }
+  /// Forgets what its points are evidence of, and the normal; the points stay.
+  void begin_evidence_anew() {
+    evidence = {};
+    evidence_count = 0.0F;
+    normal.setZero();
+    deviation_rad = normal_count = plane_weight = 0.0F;
+  }
   bool has_normal() const { return normal.squaredNorm() > 0.5F; }
   /// Along which its points count as evidence while it has no plane: its own normal, or else the line of sight. Unit.
   Eigen::Vector3d direction(const ScanSums& scan) const {
@@ -82,7 +102,8 @@ struct Cell {
     evidence.add(scan.points, trust * scan.point_weight(along));
     evidence_count += static_cast<float>(trust * scan.count());
   }
-  /// Variance of a point along the normal as its evidence is weighted: the harmonic mean. @pre sums.count > 0
+  bool has_evidence() const { return evidence.weight > 0.0F; }
+  /// Variance of a point along the normal as its evidence is weighted: the harmonic mean. @pre evidence_count > 0
   double evidence_variance_m2() const { return static_cast<double>(evidence_count / evidence.weight); }
 };
 

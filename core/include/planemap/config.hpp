@@ -62,6 +62,7 @@ struct GridConfig {
   int density_threshold = 12;
   bool clamp_centres = true;
   bool view_side = true;
+  bool second_surfaces = true;
 };
 
 template <MaybeConst<GridConfig> Config, class Visit>
@@ -71,6 +72,8 @@ void visit_fields(Config& c, Visit&& visit) {
         c.density_threshold);
   visit(FieldInfo{"clamp_centres", "for the assignment, keep virtual centres inside their cells"}, c.clamp_centres);
   visit(FieldInfo{"view_side", "cells seen from the other side attract no points"}, c.view_side);
+  visit(FieldInfo{"second_surfaces", "a cell that a plane passes through keeps what lies off that plane apart"},
+        c.second_surfaces);
 }
 
 /// Which evidence a cell's normal is fitted to.
@@ -130,7 +133,8 @@ struct PlaneConfig {
   double plane_offset_m = 0.02;
   bool view_side = true;
   bool adoption = true;
-  bool splits = false;
+  bool splits = true;
+  double crease_angle_deg = 4.5;
   double bridge_gap_m = 1.0;
   double bridge_angle_deg = 1.5;
   double slab_sigmas = 3.0;
@@ -162,6 +166,8 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"view_side", "surfaces seen from opposite sides are never one plane"}, c.view_side);
   visit(FieldInfo{"adoption", "cells without a plane join an adjacent one by their distance to it"}, c.adoption);
   visit(FieldInfo{"splits", "cells that are sure of another surface leave their plane"}, c.splits);
+  visit(FieldInfo{"crease_angle_deg", "flat pieces at more than this angle are two planes", 0.0, 90.0},
+        c.crease_angle_deg);
   visit(FieldInfo{"bridge_gap_m", "coplanar pieces with a gap up to this are one plane; 0: off", 0.0, 10.0},
         c.bridge_gap_m);
   visit(FieldInfo{"bridge_angle_deg", "pieces across a gap differ by at most this angle", 0.0, 90.0},

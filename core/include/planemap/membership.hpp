@@ -20,9 +20,7 @@ constexpr double kLeastPatchSpread = 0.15;
 /// @param variance_m2  of the points along the plane's normal
 double expected_scatter_m2(double centre_m, double cell_size_m, double variance_m2);
 
-/// Whether a cell's own evidence is flat, sure and of another surface than a plane: it turns away from it by more than
-/// an angle that no edge beside a pure cell explains, or lies off it. False where the noise spreads over several cells,
-/// or the cell is not pure: it may then be of either.
-bool is_other_surface(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m);
+/// Whether the mean of a cell's evidence surely lies off a plane. False where the noise spreads over several cells.
+bool lies_aside(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m);
 
 }  // namespace planemap

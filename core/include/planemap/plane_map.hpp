@@ -74,6 +74,9 @@ class PlaneMap {
   bool changed() const { return !dirty_.empty() || !removed_.empty(); }
   /// The plane that a cell is labelled with.
   const Plane& plane(PlaneSlot slot) const { return state(slot).fit.plane; }
+  /// The same, if it is known well enough to tell points that are on it from others; nullptr: it is not, or no plane.
+  const Plane* dividing_plane(PlaneSlot slot) const;
+  double pose_variance_m2() const { return pose_variance_m2_; }
   /// The id of the plane that a cell is labelled with.
   static PlaneId id_of(PlaneSlot slot) { return slot; }
 
@@ -102,20 +105,29 @@ class PlaneMap {
 
   void join(UncertainGrid& grid, CellRef ref, PlaneSlot slot);
   void leave(UncertainGrid& grid, CellRef ref);
+  void take(UncertainGrid& grid, CellRef ref, PlaneSlot slot);
   float member_weight(const UncertainGrid& grid, CellRef ref, const PlaneFit& fit) const;
   void forget_left_cells(const UncertainGrid& grid, PlaneSlot slot);
   void reweigh(UncertainGrid& grid, PlaneSlot slot);
   double band_m(const Cell& cell, const PlaneFit& fit) const;
-  bool is_split_off(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
 
   bool agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
              double max_angle_rad, double max_offset_m) const;
   void merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
-  std::vector<PlaneSlot> touching(const UncertainGrid& grid, const LocalPlane& local) const;
+  std::vector<PlaneSlot> touching(const UncertainGrid& grid, const std::vector<CellRef>& cells) const;
   PlaneSlot absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report);
-  bool is_pure(const LocalPlane& local) const;
+  bool is_pure(const PlaneStatistics& statistics, const PlaneFit& fit) const;
+  bool are_creased(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b,
+                   const PlaneFit& fit_b) const;
+  bool is_nearer(const UncertainGrid& grid, CellRef ref, const PlaneFit& a, const PlaneFit& b) const;
+  /// The cells of a local plane that no plane has, or one that the local plane makes a crease with and is nearer than.
+  std::vector<CellRef> free_cells(const UncertainGrid& grid, const LocalPlane& local) const;
   void start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
+  void settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report);
   PlaneSlot merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b);
+  void open_seconds(UncertainGrid& grid, std::span<const CellChange> changes);
+  PlaneSlot plane_through(const UncertainGrid& grid, CellRef ref) const;
+  bool is_sibling(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
   void adopt(UncertainGrid& grid, std::span<const CellChange> changes);
   PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref) const;
   void bridge(UncertainGrid& grid, GlobalReport& report);
@@ -137,6 +149,7 @@ class PlaneMap {
   double max_angle_rad_;
   double core_cosine_;
   std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed
+  std::vector<PlaneSlot> born_;                 ///< of this scan
   std::vector<PlaneSlot> touched_;              ///< by this scan
   std::vector<PlaneSlot> dirty_;                ///< since the last update_records()
   std::vector<RemovedPlane> removed_;           ///< since the last update_records()

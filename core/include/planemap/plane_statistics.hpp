@@ -45,6 +45,8 @@ class PlaneStatistics {
   double point_count() const { return points_; }
   double core_point_count() const { return core_points_; }
   double weight() const { return pooled_.weight; }
+  /// Variance of a point along the normal as the evidence is weighted: the harmonic mean. @pre weight() > 0
+  double evidence_variance_m2() const { return evidence_count_ / pooled_.weight; }
   const Eigen::Vector3d& view() const { return view_; }
 
   /// Fits the plane. Pooled: to the weighted second moments of the points. Otherwise as the paper: the mean of the
@@ -71,6 +73,7 @@ class PlaneStatistics {
   double cells_ = 0.0;
   double points_ = 0.0;
   double core_points_ = 0.0;
+  double evidence_count_ = 0.0;  ///< points, by the share and the trust with which they count
 };
 
 /// Expected squared distance of two uncertain unit normals, by Eq. 7: |a - b|^2 and both variances.

@@ -40,6 +40,11 @@ class UncertainGrid {
   std::optional<CellRef> find(const CellIndex& index) const;  ///< Empty: never observed.
   /// The cell at the index, which is made where there was none. Its block becomes writable.
   CellRef find_or_add(const CellIndex& index);
+  /// The cell that holds the other surface at the place of a cell, which is made where there was none. Its block
+  /// becomes writable. @pre the cell is not itself such a one
+  CellRef find_or_add_second(CellRef ref);
+  /// The other cell at the place of a cell. Empty: there is none.
+  std::optional<CellRef> sibling(CellRef ref) const;
   /// Slot of a block; empty: it holds no cell.
   std::optional<std::uint32_t> find_block(const BlockIndex& index) const;
   const Block& block(std::uint32_t slot) const { return *blocks_[slot]; }
@@ -50,8 +55,17 @@ class UncertainGrid {
   /// The cell's virtual centre, Eq. 1: E[C_u] = L / n, world frame. @pre the cell has points
   Eigen::Vector3d virtual_centre_m(CellRef ref) const { return geometric_centre_m(ref) + cell(ref).sums.mean_m(); }
 
+  /// Where the cell's surface is, world frame: the virtual centre, but of two cells at one place the first also has the
+  /// points of before they were told apart, and its evidence has not. @pre the cell has points
+  Eigen::Vector3d middle_m(CellRef ref) const {
+    const Cell& cell = this->cell(ref);
+    if (cell.second == Cell::kNoSecond || !cell.has_evidence()) return virtual_centre_m(ref);
+    return geometric_centre_m(ref) + cell.evidence.unpacked().mean();
+  }
+
   /// Calls visit(CellRef), or visit(CellRef, step) with the step from the cell, for each stored cell at most `depth`
-  /// steps away, 26-connected (Definition 2), the cell itself included.
+  /// steps away, 26-connected (Definition 2), the cell itself included; where two cells share a place, one right after
+  /// the other.
   template <class Visit>
   void for_each_neighbour(CellRef ref, int depth, Visit&& visit) const;
   /// Calls visit(CellRef) for each stored cell.
@@ -104,11 +118,16 @@ void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) co
         const int ordinal = blocks_[slot]->find(place_of(there));
         if (ordinal < 0) continue;
         const CellRef found{slot, static_cast<std::uint32_t>(ordinal)};
-        if constexpr (std::is_invocable_v<Visit, CellRef, CellIndex>) {
-          visit(found, CellIndex(dx, dy, dz));
-        } else {
-          visit(found);
-        }
+        const auto tell = [&](CellRef at) {
+          if constexpr (std::is_invocable_v<Visit, CellRef, CellIndex>) {
+            visit(at, CellIndex(dx, dy, dz));
+          } else {
+            visit(at);
+          }
+        };
+        const std::uint16_t second = blocks_[slot]->cell(found.ordinal).second;
+        tell(found);
+        if (second != Cell::kNoSecond) tell({slot, second});
       }
     }
   }

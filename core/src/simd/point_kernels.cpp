@@ -239,6 +239,39 @@ void assign(PointChunk& chunk, const Run* runs, std::size_t run_count, const Can
   }
 }
 
+/// Squared distances of a vector of points to a plane, and what is allowed of them.
+HWY_INLINE void compare(const ScanPlane& plane, const PointChunk& chunk, std::size_t at, Floats& distance2,
+                        Floats& allowed) {
+  Floats distance = set(plane.d_cells);
+  allowed = set(plane.allowed_cells2);
+  for (int k = 0; k < 3; ++k) {
+    distance = hn::MulAdd(set(plane.normal[k]), hn::LoadU(kFloat, chunk.place_cells[k] + at), distance);
+    allowed = hn::MulAdd(set(plane.variance_factor[k]), hn::LoadU(kFloat, chunk.variance_m2[k] + at), allowed);
+  }
+  distance2 = hn::Mul(distance, distance);
+}
+
+void divide(PointChunk& chunk, const Run& run, const Divider* dividers) {
+  const std::size_t lanes = hn::Lanes(kFloat);
+  const Divider* end = dividers + run.first_divider + run.divider_count;
+  for (const Divider* divider = dividers + run.first_divider; divider != end; ++divider) {
+    const auto first = hn::Set(kInt, divider->target[0]);
+    const auto second = hn::Set(kInt, divider->target[1]);
+    // The last vector may reach into the next run: what a divider does to a point does not depend on the run.
+    for (std::size_t at = PointChunk::kPad + run.begin; at < PointChunk::kPad + run.end; at += lanes) {
+      const auto target = hn::LoadU(kInt, chunk.target + at);
+      const auto mine = hn::Or(hn::Eq(target, first), hn::Eq(target, second));
+      if (hn::AllFalse(kInt, mine)) continue;
+      Floats distance2[2];
+      Floats allowed[2];
+      for (int i = 0; i < 2; ++i) compare(divider->plane[i], chunk, at, distance2[i], allowed[i]);
+      const Mask on_second = hn::Lt(hn::Mul(distance2[1], allowed[0]), hn::Mul(distance2[0], allowed[1]));
+      const auto owner = hn::IfThenElse(hn::RebindMask(kInt, on_second), second, first);
+      hn::StoreU(hn::IfThenElse(mine, owner, target), kInt, chunk.target + at);
+    }
+  }
+}
+
 /// A vector of points.
 struct Points {
   Floats x, y, z, ex, ey, ez;
@@ -348,7 +381,7 @@ void total(const Accumulator& accumulator, double* sums) {
 }
 
 const Kernels* target_kernels() {
-  static const Kernels kKernels = {project_depth, project_cloud, find_runs, assign, accumulate, total};
+  static const Kernels kKernels = {project_depth, project_cloud, find_runs, assign, divide, accumulate, total};
   return &kKernels;
 }
 

@@ -73,13 +73,30 @@ struct Candidate {
   std::int32_t target;  ///< who takes the points that it wins
 };
 
+/// A plane as the points of one scan are compared with it: their squared distance over what their errors allow. As it
+/// is made, a plane at the distance that is just allowed.
+struct ScanPlane {
+  float normal[3] = {};           ///< unit, along the world's axes
+  float d_cells = 1.0F;           ///< offset from the lower corner of the sensor's cell
+  float variance_factor[3] = {};  ///< from a point's variances along the sensor's axes, m2, to what they allow, cells2
+  float allowed_cells2 = 1.0F;    ///< beside that
+};
+
+/// Two cells that share a place, and the planes by which their points are told apart.
+struct Divider {
+  std::int32_t target[2];
+  ScanPlane plane[2];
+};
+
 /// Neighbouring points that lie in one cell.
 struct Run {
   std::uint32_t begin = 0;  ///< in the chunk
   std::uint32_t end = 0;
   std::uint32_t first_candidate = 0;
   std::uint32_t candidate_count = 0;  ///< 0: the points lie in no cell
-  float centre_cells[3] = {};         ///< of the cell, as PointChunk::place_cells
+  std::uint32_t first_divider = 0;    ///< of those whose cells are among the candidates
+  std::uint32_t divider_count = 0;
+  float centre_cells[3] = {};  ///< of the cell, as PointChunk::place_cells
 };
 
 /// Sums over the points that a cell takes, a partial one in each lane: q (3), q q^T (xx xy xz yy yz zz) with q from the
@@ -100,6 +117,8 @@ struct Kernels {
   std::size_t (*find_runs)(const PointChunk& chunk, std::uint32_t* begins);
   /// Finds for each point the candidate with the smallest expected squared distance. The runs cover the chunk.
   void (*assign)(PointChunk& chunk, const Run* runs, std::size_t run_count, const Candidate* candidates);
+  /// Gives the points that went to either cell of a divider to the one whose plane they are nearer to.
+  void (*divide)(PointChunk& chunk, const Run& run, const Divider* dividers);
   /// Adds the points to those that take them.
   void (*accumulate)(const PointChunk& chunk, Accumulator* accumulators);
   /// Adds up the lanes.
