@@ -31,8 +31,8 @@ void MapSnapshot::for_each_cell(const std::function<void(const CellView&)>& visi
       const double n = cell.sums.count;
       if (n <= parts_.density_threshold) continue;
       CellView view;
-      const Eigen::Vector3d corner_cells = block->cell_index(i).cast<double>();
-      view.centre_m = (corner_cells.array() + 0.5).matrix() * parts_.cell_size_m + cell.sums.mean_m();
+      view.index = block->cell_index(i);
+      view.centre_m = (view.index.cast<double>().array() + 0.5).matrix() * parts_.cell_size_m + cell.sums.mean_m();
       view.sigma_m = cell.sums.error_m2.cast<double>().cwiseSqrt() / n;
       if (cell.has_normal()) view.normal = cell.normal.cast<double>();
       view.deviation_rad = static_cast<double>(cell.deviation_rad);

@@ -22,6 +22,7 @@ struct CellView {
   double deviation_rad = 0.0;             ///< of the normal (Definition 3)
   std::uint64_t count = 0;                ///< points
   PlaneId plane_id = kNoPlane;
+  Eigen::Vector3i index = Eigen::Vector3i::Zero();  ///< whole-numbered place in the grid, which centre_m may be outside
 };
 
 /// What changed between two revisions of one epoch.
