@@ -4,16 +4,20 @@
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <planemap/simulation/scenes.hpp>
 #include <string>
 #include <vector>
 
 #include "config/service_config.hpp"
+#include "map_comparison.hpp"
 #include "scene_run.hpp"
 
 namespace {
 
 using planemap::accuracy::CellNormals;
+using planemap::accuracy::OutlineErrors;
+using planemap::accuracy::PlanePair;
 using planemap::accuracy::Run;
 using planemap::accuracy::RunConfig;
 using planemap::accuracy::Summary;
@@ -26,7 +30,8 @@ void print_surfaces(const Run& run) {
                 s.name.c_str(), s.seen_m2, 100.0 * s.labelled_m2 / s.seen_m2, static_cast<unsigned long long>(s.plane),
                 100.0 * s.overlap, 100.0 * s.purity, name_of(s.verdict));
     if (s.verdict == Verdict::kCorrect) {
-      std::printf("  %.3f deg  %.2f mm  nees %.2f", s.normal_error_deg, 1e3 * s.offset_error_m, s.nees);
+      std::printf("  %.3f deg  %.2f mm  nees %.2f  outline %+.1f %%", s.normal_error_deg, 1e3 * s.offset_error_m,
+                  s.nees, 100.0 * s.outline.area_error());
     }
     std::printf("\n");
   }
@@ -36,19 +41,21 @@ void print_surfaces(const Run& run) {
 }
 
 void print_heading(const std::string& preset) {
-  std::printf("%s\n  %-20s %7s %17s %5s %5s %6s %5s %9s %14s %14s  %6s %8s %6s %6s  %9s %5s %5s  %6s\n", preset.c_str(),
-              "scene", "planes", "correct", "over", "under", "missed", "noise", "labelled", "normal deg, max",
-              "offset mm, max", "nees", "mean", "<7.81", "95 %", "cells deg", "/dev", "p95", "ms");
+  std::printf("%s\n  %-20s %7s %17s %5s %5s %6s %5s %9s %14s %14s  %6s %8s %6s %6s  %9s %5s %5s  %6s %6s  %6s\n",
+              preset.c_str(), "scene", "planes", "correct", "over", "under", "missed", "noise", "labelled",
+              "normal deg, max", "offset mm, max", "nees", "mean", "<7.81", "95 %", "cells deg", "/dev", "p95", "area",
+              "worst", "ms");
 }
 
 void print_row(const std::string& name, const Summary& s) {
   std::printf(
       "  %-20s %7zu %7zu (%5.1f %%) %5zu %5zu %6zu %5zu %7.1f %% %7.3f %7.3f %6.2f %7.2f  %6.2f %8.1f %6.1f %6.1f  "
-      "%9.3f %5.2f %5.2f  %6.1f\n",
+      "%9.3f %5.2f %5.2f  %+5.1f%% %+5.1f%%  %6.1f\n",
       name.c_str(), s.surfaces, s.correct, 100.0 * s.correct_share(), s.over, s.under, s.missed, s.noise,
       100.0 * s.labelled_share, s.normal_mean_deg, s.normal_max_deg, 1e3 * s.offset_mean_m, 1e3 * s.offset_max_m,
       s.nees_median, s.nees_mean, 100.0 * s.nees_below, 100.0 * s.nees_within, s.inside_cells.mean_deg,
-      s.inside_cells.ratio_median, s.inside_cells.ratio_p95, s.ms_per_scan);
+      s.inside_cells.ratio_median, s.inside_cells.ratio_p95, 100.0 * s.outlines.area_mean,
+      100.0 * s.outlines.area_worst, s.ms_per_scan);
 }
 
 nlohmann::json to_json(const CellNormals& c) {
@@ -57,6 +64,14 @@ nlohmann::json to_json(const CellNormals& c) {
           {"ratio", {{"median", c.ratio_median}, {"p90", c.ratio_p90}, {"p95", c.ratio_p95}, {"p99", c.ratio_p99}}},
           {"shareWithin1", c.within_1},
           {"shareWithin3", c.within_3}};
+}
+
+nlohmann::json to_json(const OutlineErrors& o) {
+  return {{"planes", o.planes},
+          {"areaError", {{"mean", o.area_mean}, {"worst", o.area_worst}, {"shareWithin5Percent", o.area_within}}},
+          {"borderWorstP95M", o.border_p95_m},
+          {"overreachM", {{"p99", o.overreach_p99_m}, {"max", o.overreach_max_m}}},
+          {"shortfallM", {{"p99", o.shortfall_p99_m}, {"max", o.shortfall_max_m}}}};
 }
 
 nlohmann::json to_json(const Summary& s) {
@@ -78,6 +93,7 @@ nlohmann::json to_json(const Summary& s) {
             {"shareBelow", s.nees_below},
             {"shareWithin", s.nees_within}}},
           {"cellNormals", {{"inside", to_json(s.inside_cells)}, {"all", to_json(s.cells)}}},
+          {"wideOutlines", to_json(s.outlines)},
           {"msPerScan", s.ms_per_scan}};
 }
 
@@ -110,6 +126,7 @@ struct Options {
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<std::string> presets = {"best", "paper"};
   std::vector<std::string> overrides;
+  std::optional<std::uint64_t> shuffle;
   bool json = false;
   bool surfaces = false;
 };
@@ -135,6 +152,8 @@ void add_options(CLI::App& app, Options& options) {
                  "multiply the planes' covariances before they are scored: shows that wrong ones fail")
       ->check(CLI::Range(1e-6, 1e6))
       ->capture_default_str();
+  app.add_option("--shuffle", options.shuffle,
+                 "compare the map with that of the same frames in a random order with this seed, wear off");
   app.add_flag("--surfaces", options.surfaces, "list every surface");
   app.add_flag("--json", options.json, "one JSON object instead of tables");
 }
@@ -163,6 +182,57 @@ nlohmann::json run_all(Options& options, const std::string& preset) {
   return result;
 }
 
+/// Planes of at least a quarter of a square metre in cells.
+constexpr std::size_t kComparedCells = 40;
+
+nlohmann::json compare_one_way(const planemap::MapSnapshot& map, const planemap::MapSnapshot& other,
+                               const planemap::accuracy::SeenSurfaces& seen, const char* name, bool json) {
+  const std::vector<PlanePair> pairs = planemap::accuracy::pair_planes(map, other, seen, kComparedCells);
+  nlohmann::json different = nlohmann::json::array();
+  for (const PlanePair& p : pairs) {
+    if (planemap::accuracy::SamePlaneBounds().hold(p)) continue;
+    different.push_back({{"plane", p.plane},
+                         {"cells", p.cells},
+                         {"widthM", p.width_m},
+                         {"partner", p.partner},
+                         {"overlap", p.shared_surface},
+                         {"sharedCells", p.shared_cell_share()},
+                         {"angleDeg", p.angle_deg},
+                         {"offsetM", p.offset_m}});
+    if (json) continue;
+    std::printf(
+        "    plane %4llu, %5zu cells, %.2f m wide: plane %4llu, overlap %5.1f %% (cells %5.1f %%), %.3f deg, "
+        "%.2f mm\n",
+        static_cast<unsigned long long>(p.plane), p.cells, p.width_m, static_cast<unsigned long long>(p.partner),
+        100.0 * p.shared_surface, 100.0 * p.shared_cell_share(), p.angle_deg, 1e3 * p.offset_m);
+  }
+  if (!json) std::printf("  %s: %zu of %zu planes are the same\n", name, pairs.size() - different.size(), pairs.size());
+  return {{"planes", pairs.size()}, {"different", different}};
+}
+
+/// Maps every scene with each of its seeds twice, in order and shuffled, and compares the planes.
+nlohmann::json compare_orders(Options& options) {
+  nlohmann::json result = nlohmann::json::object();
+  options.run.mapping.wear.enabled = false;
+  for (const std::string& scene : options.scenes) {
+    for (const std::uint64_t seed : options.seeds) {
+      options.run.scene = scene;
+      options.run.seed = seed;
+      const planemap::accuracy::RecordedScene recorded = planemap::accuracy::record_scene(options.run);
+      const auto in_order = planemap::accuracy::map_frames(recorded, options.run.mapping);
+      const auto shuffled = planemap::accuracy::map_frames(recorded, options.run.mapping, options.shuffle);
+      const std::string name = scene + "-" + std::to_string(seed);
+      if (!options.json) std::printf("%s\n", name.c_str());
+      result[name]["inOrder"] =
+          compare_one_way(*in_order, *shuffled, recorded.seen, "in order, beside shuffled", options.json);
+      result[name]["shuffled"] =
+          compare_one_way(*shuffled, *in_order, recorded.seen, "shuffled, beside in order", options.json);
+      std::fflush(stdout);
+    }
+  }
+  return result;
+}
+
 int run(Options& options) {
   nlohmann::json all = nlohmann::json::object();
   for (const std::string& preset : options.presets) {
@@ -172,7 +242,7 @@ int run(Options& options) {
       return 2;
     }
     options.run.mapping = settings->mapper;
-    all[preset] = run_all(options, preset);
+    all[preset] = options.shuffle ? compare_orders(options) : run_all(options, preset);
   }
   if (options.json) std::printf("%s\n", all.dump(2).c_str());
   return 0;

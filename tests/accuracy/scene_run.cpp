@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <numbers>
+#include <numeric>
 #include <planemap/mapper.hpp>
 #include <planemap/simulation/simulated_source.hpp>
+#include <random>
 #include <utility>
 
 namespace planemap::accuracy {
@@ -27,6 +29,30 @@ simulation::SimulationConfig simulation_of(const RunConfig& config) {
 }
 
 }  // namespace
+
+RecordedScene record_scene(const RunConfig& config) {
+  simulation::SimulatedSource source(simulation_of(config));
+  RecordedScene scene{{}, SeenSurfaces(source.truth(), config.mapping.sensor.max_range_m)};
+  while (auto frame = source.next()) {
+    scene.seen.add(source, frame->scan);
+    scene.frames.push_back(std::move(*frame));
+  }
+  return scene;
+}
+
+std::shared_ptr<const MapSnapshot> map_frames(const RecordedScene& scene, const MapperConfig& mapping,
+                                              std::optional<std::uint64_t> shuffle) {
+  std::vector<std::size_t> order(scene.frames.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (shuffle) {
+    // By hand: std::shuffle differs between libraries.
+    std::mt19937_64 bits(*shuffle);
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[bits() % i]);
+  }
+  Mapper mapper(mapping, /*epoch=*/1);
+  for (const std::size_t i : order) mapper.integrate(scene.frames[i].scan, scene.frames[i].T_world_sensor);
+  return mapper.snapshot();
+}
 
 MappedScene map_scene(const RunConfig& config) {
   simulation::SimulatedSource source(simulation_of(config));

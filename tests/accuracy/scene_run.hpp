@@ -6,7 +6,9 @@
 #include <optional>
 #include <planemap/config.hpp>
 #include <planemap/snapshot.hpp>
+#include <planemap/sources/frame_source.hpp>
 #include <string>
+#include <vector>
 
 #include "seen_surfaces.hpp"
 #include "summary.hpp"
@@ -33,6 +35,20 @@ struct MappedScene {
   double ms_per_scan = 0.0;    ///< mean, milliseconds
   std::size_t worn_cells = 0;  ///< taken away, though nothing moves
 };
+
+/// A rendered scene, to be mapped more than once.
+struct RecordedScene {
+  std::vector<sources::Frame> frames;
+  SeenSurfaces seen;
+};
+
+/// Renders the scene. Takes 0.6 MB for a frame.
+RecordedScene record_scene(const RunConfig& config);
+
+/// Maps the frames of a recorded scene.
+/// @param shuffle  seed of a random order of the frames, the same on every machine; empty: as they were recorded
+std::shared_ptr<const MapSnapshot> map_frames(const RecordedScene& scene, const MapperConfig& mapping,
+                                              std::optional<std::uint64_t> shuffle = {});
 
 /// Renders the scene and maps it.
 MappedScene map_scene(const RunConfig& config);

@@ -176,6 +176,15 @@ const char* name_of(Verdict verdict) {
   return "missed";
 }
 
+std::vector<PlaneId> planes_of_patches(const MapSnapshot& map, const SeenSurfaces& seen) {
+  const CellFinder cells(map);
+  std::vector<PlaneId> planes;
+  for (const SeenSurfaces::Patch& patch : seen.patches()) {
+    planes.push_back(cells.plane_at(patch.centre_m, seen.surfaces()[patch.surface].plane.normal()));
+  }
+  return planes;
+}
+
 std::size_t Score::count(Verdict verdict) const {
   return static_cast<std::size_t>(
       std::count_if(surfaces.begin(), surfaces.end(), [&](const SurfaceScore& s) { return s.verdict == verdict; }));
@@ -215,6 +224,9 @@ Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions
     s.verdict = judge(table, i, s, options.overlap);
     if (s.verdict == Verdict::kCorrect) {
       measure(*map.find(s.plane), surface.plane, options.covariance_scale, s);
+      const PlaneRecord& record = *map.find(s.plane);
+      const Outline outline = outline_of(record.plane, record.centroid_m, centres_of(map, s.plane), map.cell_size_m());
+      s.outline = score_outline(outline, seen, i);
       correct[s.plane] = i;
     }
     result.surfaces.push_back(s);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "outline_scoring.hpp"
 #include "seen_surfaces.hpp"
 
 namespace planemap::accuracy {
@@ -27,6 +28,7 @@ struct SurfaceScore {
   double normal_error_deg = 0.0;
   double offset_error_m = 0.0;  ///< at the plane's centroid
   double nees = 0.0;            ///< normalised squared error of (n, d), 3 degrees of freedom
+  OutlineScore outline;
 };
 
 /// The normal of a dense cell in the plane of a correct surface.
@@ -56,6 +58,9 @@ struct ScoreOptions {
 /// is no noise if it lies there as a facet does: at least the overlap of it within kFacetOffset_m of the curved
 /// surface.
 Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions& options = {});
+
+/// The plane of each of seen.patches(), as the score tells it; kNoPlane: none is there.
+std::vector<PlaneId> planes_of_patches(const MapSnapshot& map, const SeenSurfaces& seen);
 
 /// A Kinect's standard error at 2.6 m: a strip that departs from the curved surface by less is flat to it.
 constexpr double kFacetOffset_m = 0.01;

@@ -18,10 +18,13 @@ std::uint64_t key_of(const Eigen::Vector2d& uv_m) {
                 static_cast<std::int32_t>(std::floor(uv_m.y() / SeenSurfaces::kPitch_m)));
 }
 
+Eigen::Vector2i square_of(std::uint64_t key) {
+  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32)),
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(key))};
+}
+
 Eigen::Vector2d centre_of(std::uint64_t key) {
-  const auto i = static_cast<std::int32_t>(static_cast<std::uint32_t>(key >> 32));
-  const auto j = static_cast<std::int32_t>(static_cast<std::uint32_t>(key));
-  return (Eigen::Vector2d(i, j).array() + 0.5) * SeenSurfaces::kPitch_m;
+  return (square_of(key).cast<double>().array() + 0.5) * SeenSurfaces::kPitch_m;
 }
 
 }  // namespace
@@ -72,6 +75,18 @@ std::vector<SeenSurfaces::Patch> SeenSurfaces::patches() const {
     }
   }
   return patches;
+}
+
+std::vector<Eigen::Vector2i> SeenSurfaces::squares(std::size_t surface) const {
+  std::vector<std::uint64_t> keys;
+  for (const auto& [key, hits] : hits_[surface]) {
+    if (hits >= kLeastHits) keys.push_back(key);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Eigen::Vector2i> squares;
+  squares.reserve(keys.size());
+  for (const std::uint64_t key : keys) squares.push_back(square_of(key));
+  return squares;
 }
 
 bool SeenSurfaces::all_seen_about(std::size_t surface, const Eigen::Vector3d& p_world_m, double distance_m) const {

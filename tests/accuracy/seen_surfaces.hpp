@@ -29,6 +29,10 @@ class SeenSurfaces {
   /// All squares that were seen, surface by surface, in an order that depends on the recording alone.
   std::vector<Patch> patches() const;
   const std::vector<simulation::Surface>& surfaces() const { return surfaces_; }
+  /// The basis of a surface's raster.
+  const PlaneBasis& basis(std::size_t surface) const { return bases_[surface]; }
+  /// The squares of a surface that were seen, ordered: each from kPitch_m times its two numbers on, in the basis.
+  std::vector<Eigen::Vector2i> squares(std::size_t surface) const;
   /// In how many frames a surface had a return.
   std::size_t frames(std::size_t surface) const { return frames_[surface]; }
   /// Whether all squares of a surface that come within a distance of a point were seen.

@@ -1,6 +1,7 @@
 #include "summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -73,6 +74,38 @@ void summarise_errors(std::span<const Run> runs, Summary& s) {
   s.nees_within = share_within(nees, 0.216, 9.35);
 }
 
+OutlineErrors summarise_outlines(std::span<const Run> runs) {
+  OutlineErrors result;
+  std::vector<double> overreach_m;
+  std::vector<double> shortfall_m;
+  for (const Run& run : runs) {
+    for (const SurfaceScore& surface : run.score.surfaces) {
+      const OutlineScore& outline = surface.outline;
+      if (surface.verdict != Verdict::kCorrect || outline.seen_width_m < OutlineErrors::kWide_m) continue;
+      ++result.planes;
+      const double error = outline.area_error();
+      result.area_mean += error;
+      result.area_within += std::abs(error) <= 0.05 ? 1.0 : 0.0;
+      if (std::abs(error) > std::abs(result.area_worst)) result.area_worst = error;
+      std::vector<double> border_m = outline.border_m;
+      std::sort(border_m.begin(), border_m.end());
+      result.border_p95_m = std::max(result.border_p95_m, quantile(border_m, 0.95));
+      overreach_m.insert(overreach_m.end(), outline.overreach_m.begin(), outline.overreach_m.end());
+      shortfall_m.insert(shortfall_m.end(), outline.shortfall_m.begin(), outline.shortfall_m.end());
+    }
+  }
+  if (result.planes == 0) return result;
+  result.area_mean /= static_cast<double>(result.planes);
+  result.area_within /= static_cast<double>(result.planes);
+  std::sort(overreach_m.begin(), overreach_m.end());
+  std::sort(shortfall_m.begin(), shortfall_m.end());
+  result.overreach_p99_m = quantile(overreach_m, 0.99);
+  result.overreach_max_m = quantile(overreach_m, 1.0);
+  result.shortfall_p99_m = quantile(shortfall_m, 0.99);
+  result.shortfall_max_m = quantile(shortfall_m, 1.0);
+  return result;
+}
+
 }  // namespace
 
 Summary summarise(std::span<const Run> runs) {
@@ -95,6 +128,7 @@ Summary summarise(std::span<const Run> runs) {
   s.labelled_share = seen_m2 > 0.0 ? labelled_m2 / seen_m2 : 0.0;
   summarise_errors(runs, s);
   s.cells = summarise_cells(runs, /*inside_only=*/false);
+  s.outlines = summarise_outlines(runs);
   s.inside_cells = summarise_cells(runs, /*inside_only=*/true);
   return s;
 }

@@ -26,6 +26,22 @@ struct CellNormals {
   double within_3 = 0.0;  ///< at most three times
 };
 
+/// Outlines of the planes of correct surfaces of which a piece at least that wide was seen.
+struct OutlineErrors {
+  static constexpr double kWide_m = 1.5;
+
+  std::size_t planes = 0;
+  double area_within = 0.0;  ///< share of them whose area is right within 5 %
+  double area_mean = 0.0;    ///< mean of the areas' errors, as a share: positive where they are too large
+  double area_worst = 0.0;   ///< the error that is farthest from 0
+  double border_p95_m =
+      0.0;  ///< 95 % of each plane's border are nearer to the border of what was seen: the worst plane
+  double overreach_p99_m = 0.0;  ///< of all their squares together
+  double overreach_max_m = 0.0;
+  double shortfall_p99_m = 0.0;
+  double shortfall_max_m = 0.0;
+};
+
 /// What several runs come to.
 struct Summary {
   std::size_t surfaces = 0;
@@ -48,6 +64,7 @@ struct Summary {
   double nees_within = 0.0;  ///< share within [0.216, 9.35], the two-sided bounds
   CellNormals cells;         ///< of all cells of the planes of correct surfaces
   CellNormals inside_cells;  ///< of those that have nothing but their surface about them
+  OutlineErrors outlines;
   double ms_per_scan = 0.0;
 
   double correct_share() const {
