@@ -351,7 +351,8 @@ PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) co
     if (other == slot) continue;
     const State& partner = state(other);
     // Two tables of one height are two tables: only pieces that are large against the gap are taken for one surface.
-    if (std::min(plane.fit.extent_m(), partner.fit.extent_m()) < 2.0 * config_.bridge_gap_m) continue;
+    if (std::min(plane.statistics.cells_extent_m(), partner.statistics.cells_extent_m()) < 2.0 * config_.bridge_gap_m)
+      continue;
     if (agree(plane.statistics, plane.fit, partner.statistics, partner.fit, config_.bridge_angle_deg * kRadPerDeg,
               0.5 * config_.plane_offset_m)) {
       return other;

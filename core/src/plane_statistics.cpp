@@ -51,6 +51,12 @@ std::optional<PlaneFit> PlaneStatistics::fit(bool pooled) const {
   return pooled ? fit_pooled() : fit_normals();
 }
 
+double PlaneStatistics::cells_extent_m() const {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(centres_.covariance(), Eigen::EigenvaluesOnly);
+  return std::sqrt(12.0 * std::max(solver.eigenvalues()(2), 0.0));
+}
+
 double PlaneStatistics::normal_deviation_rad() const {
   return normals_ > 0.5 ? std::sqrt(std::max(deviation_sum_rad2_, 0.0)) / normals_ : 0.0;  // Eq. 3: S_s / n^2
 }

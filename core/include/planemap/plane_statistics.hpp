@@ -52,6 +52,9 @@ class PlaneStatistics {
   /// Fits the plane. Pooled: to the weighted second moments of the points. Otherwise as the paper: the mean of the
   /// cells' normals, through the mean of the virtual centres. Empty where the cells span no plane.
   std::optional<PlaneFit> fit(bool pooled) const;
+  /// Length of the uniform strip over which its cells spread, metres, whatever evidence each of them has: a plane is as
+  /// large where it was seen from afar. @pre cell_count() > 0
+  double cells_extent_m() const;
   /// Mean square distance of the evidence to a plane, square metres. @pre weight() > 0
   double mean_square_distance_m2(const Plane& plane) const {
     return pooled_.mean_square_distance(plane.normal(), plane.signed_distance_m(origin_m_));
