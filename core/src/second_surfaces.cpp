@@ -14,8 +14,8 @@ namespace {
 /// Whether a cell's points scatter about every plane by more than their errors and what a bent surface does within a
 /// cell: then they are of two surfaces. Noise that fills the cell hides that.
 bool holds_two(const Cell& cell, double cell_size_m) {
-  constexpr double kSigmas = 2.0;
-  constexpr double kFloor_m = 0.005;
+  constexpr double kSigmas = 1.5;
+  constexpr double kFloor_m = 0.003;
   if (!cell.has_evidence()) return false;
   const double variance_m2 = cell.evidence_variance_m2();
   const double noisy_m = 0.5 * kLayeredShare * cell_size_m;
