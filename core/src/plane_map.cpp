@@ -126,9 +126,7 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
     coarse_.add(centre_m, survivor);
   }
   into.statistics.add(from.statistics);
-  if (poses_err_) {
-    into.pose_evidence.add(from.pose_evidence, from.statistics.origin_m() - into.statistics.origin_m(), pose_error_);
-  }
+  into.pose_evidence.add(from.pose_evidence, from.statistics.origin_m() - into.statistics.origin_m(), pose_error_);
   into.worn_cells += from.worn_cells;
   into.first_seen_utime = std::min(into.first_seen_utime, from.first_seen_utime);
   into.last_seen_utime = std::max(into.last_seen_utime, from.last_seen_utime);
@@ -232,9 +230,10 @@ GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> lo
     plane.last_seen_utime = std::max(plane.last_seen_utime, scan.utime);
     reweigh(grid, slot);
     refit(slot);
+    plane.pose_evidence.update(plane.statistics.evidence(), plane.fit.plane.normal(), plane.statistics.origin_m(), scan,
+                               pose_error_);
   }
   touched_.clear();
-  if (poses_err_) note_pose(grid, changes, scan);
   return report;
 }
 
@@ -244,24 +243,6 @@ void PlaneMap::take_pose(const ScanPose& scan) {
   poses_err_ = poses_err_ || !last_pose_.isZero(0.0);
   const double variance_m2 = band_variance_m2(last_pose_, config_.plane_offset_m);
   pose_variance_m2_ += (variance_m2 - pose_variance_m2_) / static_cast<double>(++scans_);
-}
-
-void PlaneMap::note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan) {
-  std::vector<PlaneSlot> seen;
-  for (const CellChange& change : changes) {
-    const Cell& cell = grid.cell(change.cell);
-    if (cell.plane == kNoSlot || !(cell.plane_weight > 0.0F)) continue;
-    State& plane = state(cell.plane);
-    if (plane.seen.weight <= 0.0) seen.push_back(cell.plane);
-    const double share = change.trust * static_cast<double>(cell.plane_weight);
-    plane.seen.add(change.added.points, share * change.added.point_weight(plane.fit.plane.normal()),
-                   grid.geometric_centre_m(change.cell) - plane.statistics.origin_m());
-  }
-  for (const PlaneSlot slot : seen) {
-    State& plane = state(slot);
-    plane.pose_evidence.add(plane.seen, plane.fit.plane.normal(), plane.statistics.origin_m(), scan, pose_error_);
-    plane.seen = Moments{};
-  }
 }
 
 // What lifts the paper.

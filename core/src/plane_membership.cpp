@@ -70,7 +70,7 @@ void PlaneMap::reweigh(UncertainGrid& grid, PlaneSlot slot) {
   // Where no cell is good enough to shape the plane, they all do.
   const bool any_core = std::any_of(plane.cells.begin(), plane.cells.end(),
                                     [&](CellRef ref) { return member_weight(grid, ref, plane.fit) > 0.0F; });
-  PlaneStatistics fresh(grid.geometric_centre_m(plane.cells.front()));
+  PlaneStatistics fresh(plane.statistics.origin_m());  // that its pose evidence is about, too
   for (const CellRef ref : plane.cells) {
     Cell& cell = grid.writable(ref);
     cell.plane_weight = any_core ? member_weight(grid, ref, plane.fit) : 1.0F;

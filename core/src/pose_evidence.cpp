@@ -39,9 +39,9 @@ void PoseEvidence::pass_time(std::int64_t utime, const PoseErrorConfig& config) 
   utime_ = utime;
 }
 
-void PoseEvidence::add(const Moments& seen, const Eigen::Vector3d& normal, const Eigen::Vector3d& origin_m,
-                       const ScanPose& scan, const PoseErrorConfig& config) {
-  const Eigen::Matrix4d m = homogeneous(seen);
+void PoseEvidence::update(const Moments& held, const Eigen::Vector3d& normal, const Eigen::Vector3d& origin_m,
+                          const ScanPose& scan, const PoseErrorConfig& config) {
+  const Eigen::Matrix4d m = homogeneous(held) - normal_equations_;
   const Matrix46 b =
       m * leverage(normal, origin_m, scan.T_world_sensor).transpose() * cholesky_factor(scan.covariance_or(config));
   pass_time(scan.utime, config);

@@ -107,6 +107,47 @@ TEST(PlaneStatistics, TwoSetsTogetherAreTheSetOfAllCells) {
   ASSERT_TRUE(expected && fit);
   EXPECT_TRUE(fit->plane.normal().isApprox(expected->plane.normal(), 1e-9));
   EXPECT_NEAR(fit->plane.d(), expected->plane.d(), 1e-9);
+  EXPECT_GT(expected->cell_dispersion, 0.0);
+  EXPECT_NEAR(fit->cell_dispersion, expected->cell_dispersion, 1e-6 * expected->cell_dispersion);
+}
+
+/// Cells of two points each at the corners of a square of 2 m, their means 3 mm above and below it by turns: they say
+/// nothing of a tilt, so the plane passes between them. The points lie 10 mm above and below their means.
+std::vector<std::pair<Cell, Vector3d>> twisted_square(double sigma_m) {
+  std::vector<std::pair<Cell, Vector3d>> cells;
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      const double z = 0.003 * x * y;
+      const Vector3d centre(x, y, 0.02);
+      cells.emplace_back(cell_of({{x, y, z - 0.01}, {x, y, z + 0.01}}, centre, sigma_m), centre);
+    }
+  }
+  return cells;
+}
+
+TEST(PlaneStatistics, CellsDisperseAsTheirMeansDoInUnitsOfTheirErrors) {
+  PlaneStatistics statistics({5.0, -3.0, 0.1});
+  for (const auto& [cell, centre] : twisted_square(0.002)) statistics.add(cell, centre);
+  const auto fit = statistics.fit(true);
+  ASSERT_TRUE(fit.has_value());
+  EXPECT_NEAR(std::abs(fit->plane.normal().z()), 1.0, 1e-9);
+  // Each mean of two points errs by 2 mm / sqrt(2), so 4 x (3 mm)^2 / (2 mm^2), for 4 - 3 degrees of freedom.
+  EXPECT_NEAR(fit->cell_dispersion, 18.0, 1e-4);
+  EXPECT_DOUBLE_EQ(statistics.fit(false)->cell_dispersion, 0.0) << "the mean of the normals has an error of its own";
+}
+
+TEST(PlaneStatistics, OnlyCellsThatShapeThePlaneSayHowTheyDisperse) {
+  PlaneStatistics statistics(Vector3d::Zero());
+  for (const auto& [cell, centre] : twisted_square(0.002)) statistics.add(cell, centre);
+  Cell at_edge = cell_of({{3, 0, 0.1}, {3, 0, 0.2}}, {3, 0, 0.1}, 0.002);
+  at_edge.plane_weight = 0.0F;
+  statistics.add(at_edge, {3, 0, 0.1});
+  EXPECT_NEAR(statistics.fit(true)->cell_dispersion, 18.0, 1e-4);
+  Cell comes_and_goes = cell_of({{0, 3, 0.1}, {0, 3, 0.2}}, {0, 3, 0.1}, 0.002);
+  statistics.add(comes_and_goes, {0, 3, 0.1});
+  EXPECT_GT(statistics.fit(true)->cell_dispersion, 100.0);
+  statistics.remove(comes_and_goes, {0, 3, 0.1});
+  EXPECT_NEAR(statistics.fit(true)->cell_dispersion, 18.0, 1e-4);
 }
 
 TEST(PlaneStatistics, PointsOnALineSpanNoPlane) {
@@ -145,6 +186,23 @@ TEST(Covariance, IsTheScatterOfRepeatedFits) {
   for (const int i : {0, 1, 3}) EXPECT_NEAR(std::sqrt(stated(i, i) / scatter(i, i)), 1.0, 0.15) << i;
   EXPECT_NEAR(stated(0, 3) / std::sqrt(stated(0, 0) * stated(3, 3)),
               scatter(0, 3) / std::sqrt(scatter(0, 0) * scatter(3, 3)), 0.15);
+}
+
+TEST(Covariance, GrowsByWhatCellsDisperseBeyondTheirPointsErrors) {
+  PlaneFit fit;
+  fit.spread_1_m2 = 1.0;
+  fit.spread_2_m2 = 4.0;
+  fit.weight = 1e6;
+  fit.tilt_1_rad2 = 1e-6;
+  fit.tilt_2_rad2 = 0.25e-6;
+  const Vector3d of_points(1e-6, 0.25e-6, 1e-6);
+  const auto diagonal = [&](double dispersion) -> Vector3d {
+    fit.cell_dispersion = dispersion;
+    return sensor_covariance(fit, 0.0).diagonal();
+  };
+  EXPECT_TRUE(diagonal(0.0).isApprox(of_points));         // not measured
+  EXPECT_TRUE(diagonal(0.2).isApprox(of_points));         // no less than the points' errors make
+  EXPECT_TRUE(diagonal(3.0).isApprox(12.0 * of_points));  // by patches of two cells by two
 }
 
 TEST(Covariance, HasRankThreeAndItsFloor) {

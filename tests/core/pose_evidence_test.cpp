@@ -37,6 +37,20 @@ Moments moments_of(const std::vector<Vector3d>& points, const Vector3d& origin_m
   return moments;
 }
 
+/// A plane's evidence and what its poses make of it, scan by scan.
+struct SeenPlane {
+  Vector3d origin_m = Vector3d::Zero();
+  Moments held{};
+  PoseEvidence evidence{};
+
+  /// Takes in what a scan saw, or with a factor below 0 what left the plane after it.
+  void see(const std::vector<Vector3d>& points, const ScanPose& scan, const PoseErrorConfig& config,
+           double times = 1.0) {
+    held.add(moments_of(points, origin_m), times, Vector3d::Zero());
+    evidence.update(held, Vector3d::UnitZ(), origin_m, scan, config);
+  }
+};
+
 /// The fit to points on z = 0: tangent_1 is y, the direction of less spread, and tangent_2 is x.
 PlaneFit fit_of(const std::vector<Vector3d>& points) {
   const Moments moments = moments_of(points, Vector3d::Zero());
@@ -61,12 +75,9 @@ PoseErrorConfig errors(double sigma_m, double sigma_rad, double correlation_s) {
 /// One look after another at the same patch, from straight above it.
 Matrix3d covariance_of_looks(const std::vector<double>& times_s, const PoseErrorConfig& config) {
   const auto points = patch(0.0, 0.0);
-  PoseEvidence evidence;
-  for (const double time_s : times_s) {
-    evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(),
-                 looking_down(0.0, 0.0, 2.0, time_s), config);
-  }
-  return evidence.covariance(fit_of(points), Vector3d::Zero(), configured_covariance(config));
+  SeenPlane plane;
+  for (const double time_s : times_s) plane.see(points, looking_down(0.0, 0.0, 2.0, time_s), config);
+  return plane.evidence.covariance(fit_of(points), Vector3d::Zero(), configured_covariance(config));
 }
 
 TEST(PoseEvidence, OneScanIsAsWrongAsItsPose) {
@@ -110,11 +121,9 @@ Walk walk(int steps) {
 
 Matrix3d stated_covariance(const Walk& walk, const PlaneFit& fit, const PoseErrorConfig& config) {
   const Vector3d origin_m(0.7, -0.4, 0.0);
-  PoseEvidence evidence;
-  for (std::size_t k = 0; k < walk.scans.size(); ++k) {
-    evidence.add(moments_of(walk.seen[k], origin_m), Vector3d::UnitZ(), origin_m, walk.scans[k], config);
-  }
-  return evidence.covariance(fit, origin_m, configured_covariance(config));
+  SeenPlane plane{origin_m};
+  for (std::size_t k = 0; k < walk.scans.size(); ++k) plane.see(walk.seen[k], walk.scans[k], config);
+  return plane.evidence.covariance(fit, origin_m, configured_covariance(config));
 }
 
 /// The scans' poses are disturbed as wholes, point by point, again and again, and the plane is fitted to all points.
@@ -199,9 +208,9 @@ TEST(PoseEvidence, AScanIsAsWrongAsItSaysOfItself) {
   x(2, 3) = x(3, 2) = 3e-6;
   scan.covariance = x;
   const auto points = patch(0.0, 0.0);
-  PoseEvidence evidence;
-  evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(), scan, errors(1.0, 1.0, 1.0));
-  const Matrix3d c = evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero());
+  SeenPlane plane;
+  plane.see(points, scan, errors(1.0, 1.0, 1.0));
+  const Matrix3d c = plane.evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero());
   Matrix3d expected;
   expected << 4e-6, 0.0, -3e-6,  //
       0.0, 0.0, 0.0,             //
@@ -213,14 +222,13 @@ TEST(PoseEvidence, ScansOfUnequalErrorsShareThemInProportion) {
   const double half_s = 10.0 * std::log(2.0);  // then exp(-dt / 10 s) = 1/2
   const auto variance_m2 = [&](const std::vector<double>& sigmas_m) {
     const auto points = patch(0.0, 0.0);
-    PoseEvidence evidence;
+    SeenPlane plane;
     for (std::size_t k = 0; k < sigmas_m.size(); ++k) {
       ScanPose scan = looking_down(0.0, 0.0, 2.0, half_s * static_cast<double>(k));
       scan.covariance = configured_covariance(errors(sigmas_m[k], 0.0, 0.0));
-      evidence.add(moments_of(points, Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(), scan,
-                   errors(0.0, 0.0, 10.0));
+      plane.see(points, scan, errors(0.0, 0.0, 10.0));
     }
-    return evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero())(2, 2);
+    return plane.evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero())(2, 2);
   };
   EXPECT_NEAR(variance_m2({0.01, 0.02}), 1.75e-4, 1e-9);  // 1/4 (1 + 4 + 2 * 1/2 * 1 * 2) square centimetres
   EXPECT_NEAR(variance_m2({0.01, 0.02, 0.03}), 23.5e-4 / 9.0, 1e-9);  // 1/9 (14 + 2 (1/2 * 2 + 1/2 * 6 + 1/4 * 3))
@@ -230,21 +238,46 @@ TEST(PoseEvidence, ScansOfUnequalErrorsShareThemInProportion) {
 TEST(PoseEvidence, HalvesThatWereSeenTogetherAreNoSurerThanTheWhole) {
   const PoseErrorConfig config = errors(0.01, 0.0, 10.0);
   const Vector3d other_origin_m(2.0, 0.5, 0.0);
-  PoseEvidence left;
-  PoseEvidence right;
+  SeenPlane left;
+  SeenPlane right{other_origin_m};
   for (int k = 0; k < 5; ++k) {
     const ScanPose scan = looking_down(1.0, 0.0, 2.0, k);
-    left.add(moments_of(patch(0.0, 0.0), Vector3d::Zero()), Vector3d::UnitZ(), Vector3d::Zero(), scan, config);
-    right.add(moments_of(patch(2.0, 0.0), other_origin_m), Vector3d::UnitZ(), other_origin_m, scan, config);
+    left.see(patch(0.0, 0.0), scan, config);
+    right.see(patch(2.0, 0.0), scan, config);
   }
   auto all = patch(0.0, 0.0);
   const auto more = patch(2.0, 0.0);
   const PoseCovariance x = configured_covariance(config);
-  const double of_one_half = left.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
+  const double of_one_half = left.evidence.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
   all.insert(all.end(), more.begin(), more.end());
-  left.add(right, other_origin_m, config);
-  const double of_both = left.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
+  left.evidence.add(right.evidence, other_origin_m, config);
+  const double of_both = left.evidence.covariance(fit_of(all), Vector3d::Zero(), x)(2, 2);
   EXPECT_NEAR(of_both, of_one_half, 0.05 * of_one_half);
+}
+
+TEST(PoseEvidence, WhatLeavesTakesTheErrorOfTheScanThatItLeavesIn) {
+  // Two shares come with one scan's error x_1, one of them goes with the next one's: 2 x_1 - x_2 remains.
+  const auto variance_m2 = [](double correlation_s) {
+    const PoseErrorConfig config = errors(0.01, 0.0, correlation_s);
+    const auto points = patch(0.0, 0.0);
+    SeenPlane plane;
+    plane.see(points, looking_down(0.0, 0.0, 2.0, 0.0), config, 2.0);
+    plane.see(points, looking_down(0.0, 0.0, 2.0, 1.0), config, -1.0);
+    return plane.evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero())(2, 2);
+  };
+  EXPECT_NEAR(variance_m2(0.0), 5e-4, 1e-9);                  // 4 + 1: each pose errs on its own
+  EXPECT_NEAR(variance_m2(1.0 / std::log(2.0)), 3e-4, 1e-9);  // 4 + 1 - 2 * 2 * 1/2
+  EXPECT_NEAR(variance_m2(1e9), 1e-4, 1e-9);                  // one and the same error
+}
+
+TEST(PoseEvidence, NothingChangesWhereNothingOfThePlaneIsSeen) {
+  const PoseErrorConfig config = errors(0.01, 0.02, 1.0);
+  const auto points = patch(0.0, 0.0);
+  SeenPlane plane;
+  plane.see(points, looking_down(0.5, 0.0, 2.0, 0.0), config);
+  const Matrix3d before = plane.evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero());
+  plane.see({}, looking_down(-0.5, 0.0, 3.0, 5.0), config);
+  EXPECT_TRUE(plane.evidence.covariance(fit_of(points), Vector3d::Zero(), PoseCovariance::Zero()).isApprox(before));
 }
 
 TEST(PoseEvidence, WithoutEvidenceAPlaneIsAsWrongAsOneScan) {

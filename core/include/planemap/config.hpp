@@ -142,7 +142,7 @@ struct PlaneConfig {
   double core_sigmas = 5.0;
   double core_floor_m = 0.002;
   double core_angle_deg = 8.0;
-  double offset_floor_m = 1e-4;
+  double offset_floor_m = 5e-5;
 };
 
 template <MaybeConst<PlaneConfig> Config, class Visit>

@@ -12,6 +12,10 @@ struct Symmetric3 {
   static Symmetric3 outer(const Eigen::Vector3d& v) {
     return {{v.x() * v.x(), v.x() * v.y(), v.x() * v.z(), v.y() * v.y(), v.y() * v.z(), v.z() * v.z()}};
   }
+  /// Adds other, times scale.
+  void add(const Symmetric3& other, double scale) {
+    for (std::size_t i = 0; i < 6; ++i) e[i] += scale * other.e[i];
+  }
   Eigen::Matrix3d matrix() const {
     Eigen::Matrix3d m;
     m << e[0], e[1], e[2], e[1], e[3], e[4], e[2], e[4], e[5];

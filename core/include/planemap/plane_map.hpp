@@ -85,8 +85,7 @@ class PlaneMap {
     explicit State(const Eigen::Vector3d& origin_m) : statistics(origin_m) {}
     PlaneStatistics statistics;
     PlaneFit fit;
-    PoseEvidence pose_evidence;  ///< empty where poses are exact
-    Moments seen;                ///< by this scan, about the statistics' origin
+    PoseEvidence pose_evidence;
     std::vector<CellRef> cells;  ///< also cells that have left; a cell's own label decides
     std::vector<PlaneId> merged;
     std::int64_t first_seen_utime = 0;
@@ -136,7 +135,6 @@ class PlaneMap {
   void dissolve(UncertainGrid& grid, PlaneSlot slot);
   bool is_worn_out(PlaneSlot slot) const;
   void take_pose(const ScanPose& scan);
-  void note_pose(const UncertainGrid& grid, std::span<const CellChange> changes, const ScanPose& scan);
   PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;
 
   GridConfig grid_config_;

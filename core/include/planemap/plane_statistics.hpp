@@ -21,6 +21,9 @@ struct PlaneFit {
   double weight = 0.0;                                   ///< of the evidence: the sum of 1 / sigma^2, 1/m2
   double tilt_1_rad2 = 0.0;  ///< variance of the tilt along tangent_1, by the errors of the evidence
   double tilt_2_rad2 = 0.0;  ///< and along tangent_2
+  /// Mean square distance of the means of its cells to the plane, in units of what their points' errors make of it:
+  /// chi squared of the cells per degree of freedom. 1 where the points' errors are all there is; 0: not measured.
+  double cell_dispersion = 0.0;
 
   /// Width and length of the uniform rectangle with these spreads, metres.
   double width_m() const;
@@ -44,6 +47,7 @@ class PlaneStatistics {
   std::size_t cell_count() const { return static_cast<std::size_t>(cells_); }
   double point_count() const { return points_; }
   double core_point_count() const { return core_points_; }
+  const Moments& evidence() const { return pooled_; }  ///< its points, weighted, about origin_m()
   double weight() const { return pooled_.weight; }
   /// Variance of a point along the normal as the evidence is weighted: the harmonic mean. @pre weight() > 0
   double evidence_variance_m2() const { return evidence_count_ / pooled_.weight; }
@@ -65,9 +69,11 @@ class PlaneStatistics {
   std::optional<PlaneFit> fit_pooled() const;
   std::optional<PlaneFit> fit_normals() const;
   double normal_deviation_rad() const;
+  double cell_dispersion(const Plane& plane) const;
 
   Eigen::Vector3d origin_m_;
   Moments pooled_;                                        ///< points, weighted, about origin_m_
+  Symmetric3 means_;                                      ///< second moment of the cells' means, weighted, likewise
   Moments centres_;                                       ///< virtual centres, each with weight 1, about origin_m_
   Eigen::Vector3d normal_sum_ = Eigen::Vector3d::Zero();  ///< Definition 1's L, of normals
   double deviation_sum_rad2_ = 0.0;                       ///< Definition 1's S_s, of normals
@@ -77,6 +83,7 @@ class PlaneStatistics {
   double points_ = 0.0;
   double core_points_ = 0.0;
   double evidence_count_ = 0.0;  ///< points, by the share and the trust with which they count
+  double core_cells_ = 0.0;
 };
 
 /// Expected squared distance of two uncertain unit normals, by Eq. 7: |a - b|^2 and both variances.
@@ -89,7 +96,9 @@ inline double expected_squared_distance(const Eigen::Vector3d& a, double deviati
 double squared_chord(double angle_rad);
 
 /// Covariance of (tilt_1, tilt_2, offset at the centroid) of a fit whose weights are 1 / sigma^2, about its tangents;
-/// what the sensor's errors make of it. Radians and metres.
+/// what the errors of its evidence make of it. Where the means of its cells scatter about the plane by more than the
+/// errors of their points allow, the covariance grows by as much (Birge's ratio), and cells that lie side by side are
+/// taken to err together. Radians and metres.
 /// @param offset_floor_m  standard error of the offset that is added to what the points say; the tilts get it at half
 /// the extent
 Eigen::Matrix3d sensor_covariance(const PlaneFit& fit, double offset_floor_m);

@@ -34,12 +34,16 @@ struct ScanPose {
 /// product over the times between: it is right at any moment and costs the same each time.
 class PoseEvidence {
  public:
-  /// Adds what one scan saw of the plane. Scans come in the order in which they are mapped.
-  /// @param seen      moments of the scan's points about the origin, with their weights in the plane
+  /// Takes in what a scan changed: points that it saw, and cells that joined the plane, left it or count for more or
+  /// less than before. All of that is taken to have the error of this scan's pose, for a cell doesn't know which scans
+  /// saw it: most cells join soon after they were first seen, and of evidence that goes some of its error is taken to
+  /// stay, which overstates it. So M_k is what the plane holds after the scan less what it held before, and A is always
+  /// the fit's own. Scans come in the order in which they are mapped.
+  /// @param held      moments about the origin of all points of the plane now, with their weights in it
   /// @param normal    of the plane, unit
   /// @param origin_m  that all moments are about, world frame; the same for each call
-  void add(const Moments& seen, const Eigen::Vector3d& normal, const Eigen::Vector3d& origin_m, const ScanPose& scan,
-           const PoseErrorConfig& config);
+  void update(const Moments& held, const Eigen::Vector3d& normal, const Eigen::Vector3d& origin_m, const ScanPose& scan,
+              const PoseErrorConfig& config);
   /// Adds that of another plane. How far the two share their errors is not kept: they are taken to share them all.
   /// @param shift_m  the other's origin minus ours
   void add(const PoseEvidence& other, const Eigen::Vector3d& shift_m, const PoseErrorConfig& config);
