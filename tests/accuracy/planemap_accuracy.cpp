@@ -142,6 +142,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--set", options.overrides, "any setting, as section.key=value");
   app.add_option("--frames", run.frames, "frames of one tour (default: 300 of the apartment, a special room's own)")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--until", run.until, "score the map after so many frames of the tour (default: after all)")
+      ->check(CLI::Range(1, 1000000));
   app.add_option("--noise", run.noise_scale, "times the Kinect's own noise")->capture_default_str();
   app.add_option("--pose-noise-m", run.pose_sigma_m, "standard deviation of the poses' position")
       ->capture_default_str();

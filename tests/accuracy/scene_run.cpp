@@ -61,7 +61,7 @@ MappedScene map_scene(const RunConfig& config) {
   std::chrono::steady_clock::duration spent{};
   std::size_t scans = 0;
   std::size_t worn_cells = 0;
-  while (auto frame = source.next()) {
+  while (auto frame = !config.until || scans < *config.until ? source.next() : std::nullopt) {
     seen.add(source, frame->scan);
     const Scan scan = std::move(frame->scan);
     const auto begin = std::chrono::steady_clock::now();

@@ -20,6 +20,7 @@ struct RunConfig {
   std::string scene = "apartment";  ///< one of simulation::scenes()
   std::uint64_t seed = 1;
   std::optional<std::size_t> frames;  ///< empty: 300 of the apartment, a special room's own number
+  std::optional<std::size_t> until;   ///< the map is scored after so many of the frames; empty: after all
   MapperConfig mapping = preset(Preset::kBest);
   double noise_scale = 1.0;
   double pose_sigma_m = 0.0;

@@ -78,9 +78,9 @@ Summary summarise(std::span<const Run> runs);
 /// and 95 % within the two-sided bounds; but all planes of one recording share its poses' errors, so a few recordings
 /// are a small sample, and planes beside edges have errors of their own.
 struct NeesBounds {
-  double least_median = 1.18;
-  double most_median = 4.74;
-  double least_within = 0.75;
+  double least_median = 1.0;
+  double most_median = 5.0;
+  double least_within = 0.85;
 
   bool hold(const Summary& summary) const {
     return summary.nees_median >= least_median && summary.nees_median <= most_median &&

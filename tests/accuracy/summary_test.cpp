@@ -98,8 +98,17 @@ TEST(NeesBounds, FailForCovariancesThatAreSixteenTimesTooLargeOrTooSmall) {
   }
 }
 
+struct Wandering {
+  double sigma_m;
+  double sigma_deg;
+  double sigma_rad;
+};
+
+class NeesBoundsOfMaps : public testing::TestWithParam<Wandering> {};
+
 // A real map: poses wander, the mapper is told, and its covariances hold the bounds; scaled ones don't.
-TEST(NeesBounds, TellRightCovariancesOfAMapFromScaledOnes) {
+TEST_P(NeesBoundsOfMaps, TellRightCovariancesFromScaledOnes) {
+  const Wandering& pose = GetParam();
   std::vector<MapRun> right;
   std::vector<MapRun> inflated;
   std::vector<MapRun> deflated;
@@ -107,10 +116,10 @@ TEST(NeesBounds, TellRightCovariancesOfAMapFromScaledOnes) {
     RunConfig config;
     config.seed = seed;
     config.frames = 120;
-    config.pose_sigma_m = 0.005;
-    config.pose_sigma_deg = 0.1146;
+    config.pose_sigma_m = pose.sigma_m;
+    config.pose_sigma_deg = pose.sigma_deg;
     config.pose_correlation_s = 2.0;
-    config.mapping.pose_error = {0.005, 0.002, 2.0};
+    config.mapping.pose_error = {pose.sigma_m, pose.sigma_rad, 2.0};
     const MappedScene mapped = map_scene(config);
     const auto scored = [&mapped](double covariance_scale) {
       ScoreOptions options;
@@ -129,6 +138,9 @@ TEST(NeesBounds, TellRightCovariancesOfAMapFromScaledOnes) {
   EXPECT_FALSE(NeesBounds().hold(summarise(inflated)));
   EXPECT_FALSE(NeesBounds().hold(summarise(deflated)));
 }
+
+INSTANTIATE_TEST_SUITE_P(NeesBounds, NeesBoundsOfMaps,
+                         testing::Values(Wandering{0.002, 0.046, 0.0008}, Wandering{0.005, 0.1146, 0.002}));
 
 }  // namespace
 }  // namespace planemap::accuracy
