@@ -1,0 +1,59 @@
+#include "planemap/described_plane.hpp"
+
+#include <planemap/classify.hpp>
+#include <unordered_map>
+#include <utility>
+
+namespace planemap {
+
+namespace {
+
+/// Adds the outlines that are missing, from the cells of the map.
+void add_outlines(const MapSnapshot& snapshot, std::vector<DescribedPlane>& planes) {
+  std::unordered_map<PlaneId, std::vector<Eigen::Vector3d>> cells_of_changed;
+  for (const DescribedPlane& plane : planes) {
+    if (!plane.outline) cells_of_changed.emplace(plane.record->id, std::vector<Eigen::Vector3d>{});
+  }
+  if (cells_of_changed.empty()) return;
+  snapshot.for_each_cell([&](const CellView& cell) {
+    const auto entry = cells_of_changed.find(cell.plane_id);
+    if (entry != cells_of_changed.end()) entry->second.push_back(cell.centre_m);
+  });
+  for (DescribedPlane& plane : planes) {
+    if (plane.outline) continue;
+    const PlaneRecord& record = *plane.record;
+    plane.outline = std::make_shared<const Outline>(
+        outline_of(record.plane, record.centroid_m, cells_of_changed.at(record.id), snapshot.cell_size_m()));
+  }
+}
+
+void add_classes(const std::optional<Eigen::Vector3d>& gravity, std::vector<DescribedPlane>& planes) {
+  std::vector<Surface> surfaces;
+  surfaces.reserve(planes.size());
+  for (const DescribedPlane& plane : planes) {
+    surfaces.push_back(Surface{plane.record->plane, plane.record->centroid_m, plane.outline->area_m2});
+  }
+  const auto classes = classify(surfaces, gravity);
+  for (std::size_t i = 0; i < planes.size(); ++i) planes[i].plane_class = classes[i];
+}
+
+}  // namespace
+
+std::vector<DescribedPlane> describe_planes(const MapSnapshot& snapshot, const std::optional<Eigen::Vector3d>& gravity,
+                                            std::span<const DescribedPlane> previous) {
+  // The earlier planes hold their records, so an address says which record it is.
+  std::unordered_map<const PlaneRecord*, std::shared_ptr<const Outline>> known;
+  known.reserve(previous.size());
+  for (const DescribedPlane& plane : previous) known.emplace(plane.record.get(), plane.outline);
+  std::vector<DescribedPlane> planes;
+  planes.reserve(snapshot.planes().size());
+  for (const auto& record : snapshot.planes()) {
+    const auto found = known.find(record.get());
+    planes.push_back({record, found == known.end() ? nullptr : found->second, PlaneClass::kOther});
+  }
+  add_outlines(snapshot, planes);
+  add_classes(gravity, planes);
+  return planes;
+}
+
+}  // namespace planemap
