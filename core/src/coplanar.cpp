@@ -118,6 +118,19 @@ CoplanarLinks coplanar_links(std::span<const SizedPlane> planes) {
   return links;
 }
 
+std::vector<PlaneId> coplanar_with(std::span<const SizedPlane> planes, std::size_t plane) {
+  std::vector<PlaneId> linked;
+  if (planes[plane].area_m2 < kLeastLinkedAreaM2) return linked;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (i == plane || planes[i].area_m2 < kLeastLinkedAreaM2) continue;
+    // In the order in which coplanar_links() compares them, so that both round alike.
+    const auto [first, second] = std::minmax(i, plane);
+    if (are_coplanar(*planes[first].record, *planes[second].record)) linked.push_back(planes[i].record->id);
+  }
+  std::sort(linked.begin(), linked.end());
+  return linked;
+}
+
 CoplanarLinks coplanar_links(const MapSnapshot& snapshot) {
   const double cell_m2 = snapshot.cell_size_m() * snapshot.cell_size_m();
   std::vector<SizedPlane> planes;

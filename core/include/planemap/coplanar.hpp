@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <planemap/plane.hpp>
 #include <planemap/snapshot.hpp>
@@ -33,5 +34,8 @@ using CoplanarLinks = std::map<PlaneId, std::vector<PlaneId>>;
 CoplanarLinks coplanar_links(std::span<const SizedPlane> planes);
 /// The same for a map; the size of a plane by its cells.
 CoplanarLinks coplanar_links(const MapSnapshot& snapshot);
+/// The links of one of the planes alone, ascending: what coplanar_links() has for it.
+/// @param plane  place in `planes`
+std::vector<PlaneId> coplanar_with(std::span<const SizedPlane> planes, std::size_t plane);
 
 }  // namespace planemap

@@ -13,6 +13,7 @@
 namespace planemap {
 
 class Block;
+struct Cell;
 
 /// A dense cell as readers see it.
 struct CellView {
@@ -57,15 +58,23 @@ class MapSnapshot {
   std::uint64_t revision() const { return parts_.revision; }
   std::int64_t utime() const { return parts_.utime; }  ///< microseconds, of the newest mapped scan; 0: none yet
   double cell_size_m() const { return parts_.cell_size_m; }
-  std::size_t cell_count() const { return parts_.cell_count; }  ///< stored cells, dense or not
+  int density_threshold() const { return parts_.density_threshold; }  ///< a dense cell has more points
+  std::size_t cell_count() const { return parts_.cell_count; }        ///< stored cells, dense or not
   std::size_t block_count() const { return parts_.blocks.size(); }
 
   /// All planes, by id.
   std::span<const std::shared_ptr<const PlaneRecord>> planes() const { return parts_.planes; }
   /// The plane of that name; nullptr: there is none (now).
   const PlaneRecord* find(PlaneId id) const;
+  /// Planes that are no more, by revision, then id; the oldest of many are forgotten.
+  std::span<const RemovedPlane> removed() const { return parts_.removed; }
   /// What changed since a revision of this epoch; empty where that is not known any more: take the whole map.
   std::optional<MapDelta> delta_since(std::uint64_t revision) const;
+  /// The blocks of cells, in the order in which they were made.
+  std::span<const std::shared_ptr<const Block>> blocks() const { return parts_.blocks; }
+  bool is_dense(const Cell& cell) const;
+  /// A cell of one of the blocks as readers see it. @pre the cell has points
+  CellView view_of(const Block& block, std::size_t ordinal) const;
   /// Every dense cell, in an order that depends on the map alone.
   void for_each_cell(const std::function<void(const CellView&)>& visit) const;
 
