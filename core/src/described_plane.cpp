@@ -1,5 +1,6 @@
 #include "planemap/described_plane.hpp"
 
+#include <planemap/block.hpp>
 #include <planemap/classify.hpp>
 #include <unordered_map>
 #include <utility>
@@ -15,10 +16,22 @@ void add_outlines(const MapSnapshot& snapshot, std::vector<DescribedPlane>& plan
     if (!plane.outline) cells_of_changed.emplace(plane.record->id, std::vector<Eigen::Vector3d>{});
   }
   if (cells_of_changed.empty()) return;
-  snapshot.for_each_cell([&](const CellView& cell) {
-    const auto entry = cells_of_changed.find(cell.plane_id);
-    if (entry != cells_of_changed.end()) entry->second.push_back(cell.centre_m);
-  });
+  // Neighbours in a block are mostly of one plane, and most planes have not changed: nothing else is done for their
+  // cells.
+  PlaneId last = kNoPlane;
+  std::vector<Eigen::Vector3d>* cells_of_last = nullptr;
+  for (const auto& block : snapshot.blocks()) {
+    for (std::size_t i = 0; i < block->size(); ++i) {
+      const Cell& cell = block->cell(i);
+      if (cell.plane != last) {
+        last = cell.plane;
+        const auto entry = cells_of_changed.find(last);
+        cells_of_last = entry == cells_of_changed.end() ? nullptr : &entry->second;
+      }
+      if (cells_of_last == nullptr || !snapshot.is_dense(cell)) continue;
+      cells_of_last->push_back(snapshot.view_of(*block, i).centre_m);
+    }
+  }
   for (DescribedPlane& plane : planes) {
     if (plane.outline) continue;
     const PlaneRecord& record = *plane.record;

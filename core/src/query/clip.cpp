@@ -105,6 +105,12 @@ std::vector<Ring> rings_of(std::span<const Polygon> polygons) {
 }
 
 void clip(std::vector<Ring>& rings, const HalfPlane& half_plane) {
+  // Most half-planes of a circle cut nothing away.
+  const bool holds_all = std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
+    return std::all_of(ring.begin(), ring.end(),
+                       [&](const Eigen::Vector2d& p_m) { return half_plane.excess(p_m) <= 0.0; });
+  });
+  if (holds_all) return;
   const Eigen::Vector2d along(-half_plane.normal.y(), half_plane.normal.x());
   std::vector<Ring> kept;
   std::vector<Chain> chains;
@@ -133,8 +139,11 @@ std::vector<Polygon> polygons_of(std::vector<Ring> rings) {
   std::vector<Ring> holes;
   for (Ring& ring : rings) {
     const double area = signed_area_m2(ring);
-    if (area > kSliverM2) outers.push_back({area, {std::move(ring), {}}});
-    if (area < -kSliverM2) holes.push_back(std::move(ring));
+    if (area > kSliverM2) {
+      outers.push_back({area, {std::move(ring), {}}});
+    } else if (area < -kSliverM2) {
+      holes.push_back(std::move(ring));
+    }
   }
   std::stable_sort(outers.begin(), outers.end(), [](const Sized& a, const Sized& b) { return a.area_m2 < b.area_m2; });
   for (Ring& hole : holes) {
@@ -146,7 +155,8 @@ std::vector<Polygon> polygons_of(std::vector<Ring> rings) {
   }
   std::vector<Polygon> polygons;
   polygons.reserve(outers.size());
-  for (auto outer = outers.rbegin(); outer != outers.rend(); ++outer) polygons.push_back(std::move(outer->polygon));
+  std::reverse(outers.begin(), outers.end());
+  for (Sized& outer : outers) polygons.push_back(std::move(outer.polygon));
   return polygons;
 }
 

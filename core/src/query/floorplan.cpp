@@ -176,13 +176,23 @@ void add_surface(const DescribedPlane& plane, const PlanAxes& axes, const PlanRa
 }
 
 /// Squares of a cell's size where dense cells lie over a floor, between two heights.
-PlanSet obstacles_over(const Plane& floor, const MapSnapshot& snapshot, const PlanAxes& axes, const PlanRaster& raster,
-                       const FloorplanQuery& query) {
+PlanSet obstacles_over(const QueryIndex& index, const DescribedPlane& floor, const PlanAxes& axes,
+                       const PlanRaster& raster, const FloorplanQuery& query) {
   // Cells above each other make one square: they are counted on a raster of half a cell.
-  const double step_m = 0.5 * snapshot.cell_size_m();
+  const double step_m = 0.5 * index.snapshot->cell_size_m();
+  Eigen::AlignedBox3d above;
+  for (const Polygon& polygon : floor.outline->polygons) {
+    for (const Eigen::Vector2d& uv_m : polygon.outer) {
+      const Eigen::Vector3d p_m = floor.outline->basis.to_world(uv_m);
+      above.extend(p_m + query.clear_low_m * floor.record->plane.normal());
+      above.extend(p_m + query.clear_high_m * floor.record->plane.normal());
+    }
+  }
+  const Eigen::Vector3d margin_m = Eigen::Vector3d::Constant(2.0 * step_m);  // half a square, and the raster's step
+  above = {above.min() - margin_m, above.max() + margin_m};
   std::vector<std::pair<std::int64_t, std::int64_t>> columns;
-  snapshot.for_each_cell([&](const CellView& cell) {
-    const double height_m = floor.signed_distance_m(cell.centre_m);
+  index.visit_cells(above, [&](const CellView& cell) {
+    const double height_m = floor.record->plane.signed_distance_m(cell.centre_m);
     if (height_m < query.clear_low_m || height_m > query.clear_high_m) return;
     const Eigen::Vector2d p = axes.to_plan(cell.centre_m) / step_m;
     columns.emplace_back(std::llround(p.x()), std::llround(p.y()));
@@ -197,6 +207,23 @@ PlanSet obstacles_over(const Plane& floor, const MapSnapshot& snapshot, const Pl
     set.insert(bp::rectangle_data<int>(low.x(), low.y(), high.x(), high.y()));
   }
   return set;
+}
+
+/// What of a wall is cut, with the rectangle around it.
+struct PlanStrip {
+  bp::polygon_data<int> polygon;
+  bp::rectangle_data<int> extent;
+};
+
+/// The strips that may touch a set: all of them would make each floor's work grow with the map.
+PlanSet strips_beside(const std::vector<PlanStrip>& strips, PlanSet& set) {
+  PlanSet beside;
+  bp::rectangle_data<int> extent;
+  if (!set.extents(extent)) return beside;
+  for (const PlanStrip& strip : strips) {
+    if (bp::intersects(strip.extent, extent)) beside.insert(strip.polygon);
+  }
+  return beside;
 }
 
 std::vector<const DescribedPlane*> planes_of(const QueryIndex& index, const FilterTest& filter, PlaneClass wanted) {
@@ -226,11 +253,14 @@ Expected<Floorplan> floorplan_of(const QueryIndex& index, const FloorplanQuery& 
     plan.floor_height_m = std::min(plan.floor_height_m, plan.axes.up.dot(floor->record->centroid_m));
   }
   const PlanRaster raster(plan.axes.to_plan(floors.front()->record->centroid_m));
+  std::vector<PlanStrip> strips;
   PlanSet wall_set;
   for (const DescribedPlane* wall : walls) {
     for (const Ring& strip : strips_of(*wall, plan.axes, plan.floor_height_m + query.cut_low_m,
                                        plan.floor_height_m + query.cut_high_m, query.wall_thickness_m)) {
-      wall_set.insert(raster.polygon(strip));
+      strips.push_back({raster.polygon(strip), {}});
+      bp::extents(strips.back().extent, strips.back().polygon);
+      wall_set.insert(strips.back().polygon);
     }
   }
   PlanSet floor_set;
@@ -238,10 +268,10 @@ Expected<Floorplan> floorplan_of(const QueryIndex& index, const FloorplanQuery& 
   for (const DescribedPlane* floor : floors) {
     PlanSet piece;
     add_surface(*floor, plan.axes, raster, piece);
-    floor_set += piece;
-    piece -= wall_set;
-    piece -= obstacles_over(floor->record->plane, *index.snapshot, plan.axes, raster, query);
-    free_set += piece;
+    floor_set.insert(piece);
+    piece -= obstacles_over(index, *floor, plan.axes, raster, query);
+    piece -= strips_beside(strips, piece);
+    free_set.insert(piece);
   }
   const double cell_m2 = index.snapshot->cell_size_m() * index.snapshot->cell_size_m();
   plan.walls = raster.polygons_of(wall_set, 0.0);

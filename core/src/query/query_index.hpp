@@ -25,9 +25,32 @@ struct QueryIndex {
   PlaneTree tree;
   std::shared_ptr<const BlockIndexTable> blocks;
 
+  /// Calls visit(cell view) for the dense cells whose virtual centres are in a box, in an order that depends on the map
+  /// alone.
+  template <class Visit>
+  void visit_cells(const Eigen::AlignedBox3d& box, Visit&& visit) const;
   /// Place of a plane; empty: there is none of that id.
   std::optional<std::size_t> find(PlaneId id) const;
 };
+
+template <class Visit>
+void QueryIndex::visit_cells(const Eigen::AlignedBox3d& box, Visit&& visit) const {
+  const double edge_m = snapshot->cell_size_m() * kBlockEdge;
+  // Virtual centres lie up to a few cells outside of their cubes, never a block.
+  const Eigen::Vector3d margin_m = Eigen::Vector3d::Constant(edge_m);
+  const Eigen::AlignedBox3d reach(box.min() - margin_m, box.max() + margin_m);
+  const auto indices = blocks->indices();
+  for (std::size_t slot = 0; slot < indices.size(); ++slot) {
+    const Eigen::Vector3d corner_m = indices[slot].cast<double>() * edge_m;
+    if (!reach.intersects(Eigen::AlignedBox3d(corner_m, corner_m + margin_m))) continue;
+    const Block& block = *snapshot->blocks()[slot];
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      if (!snapshot->is_dense(block.cell(i))) continue;
+      const CellView view = snapshot->view_of(block, i);
+      if (box.contains(view.centre_m)) visit(view);
+    }
+  }
+}
 
 /// A filter made ready to be asked about the planes of one index. Both must outlive it.
 class FilterTest {

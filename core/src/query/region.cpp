@@ -48,32 +48,6 @@ std::optional<RegionPlane> part_of(const DescribedPlane& plane, const RegionShap
   return part;
 }
 
-void add_cells(const MapSnapshot& snapshot, const Block& block, const RegionShape& shape, const FilterTest& filter,
-               std::vector<CellView>& cells) {
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const Cell& cell = block.cell(i);
-    if (!snapshot.is_dense(cell)) continue;
-    const CellView view = snapshot.view_of(block, i);
-    if (shape.contains(view.centre_m) && filter.passes_cell_of(view.plane_id)) cells.push_back(view);
-  }
-}
-
-std::vector<CellView> cells_in(const QueryIndex& index, const RegionShape& shape, const FilterTest& filter) {
-  const MapSnapshot& snapshot = *index.snapshot;
-  const double edge_m = snapshot.cell_size_m() * kBlockEdge;
-  // Virtual centres lie up to a few cells outside of their cubes, never a block.
-  const Eigen::Vector3d margin_m = Eigen::Vector3d::Constant(edge_m);
-  const Eigen::AlignedBox3d reach(shape.bounds.min() - margin_m, shape.bounds.max() + margin_m);
-  std::vector<CellView> cells;
-  const auto indices = index.blocks->indices();
-  for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-    const Eigen::Vector3d corner_m = indices[slot].cast<double>() * edge_m;
-    const Eigen::AlignedBox3d box(corner_m, corner_m + Eigen::Vector3d::Constant(edge_m));
-    if (reach.intersects(box)) add_cells(snapshot, *snapshot.blocks()[slot], shape, filter, cells);
-  }
-  return cells;
-}
-
 }  // namespace
 
 Expected<RegionContents> contents_of(const QueryIndex& index, const RegionQuery& query) {
@@ -90,7 +64,10 @@ Expected<RegionContents> contents_of(const QueryIndex& index, const RegionQuery&
   for (const std::size_t plane : near) {
     if (auto part = part_of(index.planes[plane], *shape, query.polygons)) contents.planes.push_back(std::move(*part));
   }
-  if (query.cells) contents.cells = cells_in(index, *shape, filter);
+  if (!query.cells) return contents;
+  index.visit_cells(shape->bounds, [&](const CellView& cell) {
+    if (shape->contains(cell.centre_m) && filter.passes_cell_of(cell.plane_id)) contents.cells.push_back(cell);
+  });
   return contents;
 }
 
