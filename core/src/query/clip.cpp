@@ -38,7 +38,11 @@ void cut(const Ring& ring, const std::vector<double>& excess, const Eigen::Vecto
     }
     const Eigen::Vector2d on_border = crossing(ring[before], excess[before], ring[i], excess[i]);
     if (is_in) {
-      chains.push_back({{on_border, ring[i]}, along.dot(on_border), 0.0});
+      Chain& chain = chains.emplace_back();
+      chain.points.reserve(n + 2);
+      chain.points.push_back(on_border);
+      chain.points.push_back(ring[i]);
+      chain.enters_at = along.dot(on_border);
     } else {
       chains.back().points.push_back(on_border);
       chains.back().leaves_at = along.dot(on_border);
@@ -51,6 +55,8 @@ void cut(const Ring& ring, const std::vector<double>& excess, const Eigen::Vecto
 /// place, and so on. Matched by rank, it comes out even where rounding has places change their order.
 void join(std::vector<Chain>& chains, std::vector<Ring>& rings) {
   const std::size_t n = chains.size();
+  if (n == 1) rings.push_back(std::move(chains.front().points));
+  if (n <= 1) return;
   std::vector<std::size_t> leaving(n);
   for (std::size_t i = 0; i < n; ++i) leaving[i] = i;
   std::vector<std::size_t> entering = leaving;
@@ -104,19 +110,22 @@ std::vector<Ring> rings_of(std::span<const Polygon> polygons) {
   return rings;
 }
 
-void clip(std::vector<Ring>& rings, const HalfPlane& half_plane) {
-  // Most half-planes of a circle cut nothing away.
-  const bool holds_all = std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
+bool holds(const HalfPlane& half_plane, const std::vector<Ring>& rings) {
+  return std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
     return std::all_of(ring.begin(), ring.end(),
                        [&](const Eigen::Vector2d& p_m) { return half_plane.excess(p_m) <= 0.0; });
   });
-  if (holds_all) return;
+}
+
+void clip(std::vector<Ring>& rings, const HalfPlane& half_plane) {
+  if (holds(half_plane, rings)) return;
   const Eigen::Vector2d along(-half_plane.normal.y(), half_plane.normal.x());
   std::vector<Ring> kept;
   std::vector<Chain> chains;
   std::vector<double> excess;
   for (Ring& ring : rings) {
     excess.clear();
+    excess.reserve(ring.size());
     for (const Eigen::Vector2d& p_m : ring) excess.push_back(half_plane.excess(p_m));
     const auto within = std::count_if(excess.begin(), excess.end(), [](double e) { return e <= 0.0; });
     if (within == 0) continue;

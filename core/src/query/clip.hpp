@@ -19,6 +19,8 @@ struct HalfPlane {
 double signed_area_m2(const Ring& ring);
 /// All rings of polygons: outer ones counter-clockwise, holes clockwise.
 std::vector<Ring> rings_of(std::span<const Polygon> polygons);
+/// Whether all of the rings is in the half-plane.
+bool holds(const HalfPlane& half_plane, const std::vector<Ring>& rings);
 /// What of the rings' inside is in the half-plane. Their inside is to the left of each side, before and after.
 void clip(std::vector<Ring>& rings, const HalfPlane& half_plane);
 /// Puts rings together: each hole into the smallest outer ring around it, largest polygon first. Slivers of less than a

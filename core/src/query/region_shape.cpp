@@ -199,7 +199,7 @@ std::optional<std::vector<HalfPlane>> RoundOnPlane::half_planes() const {
     for (const double sign : {-1.0, 1.0}) add(sign * stretches[0] * axes_.col(0), rest_m);
     return half_planes;
   }
-  constexpr int kCorners = 128;
+  constexpr int kCorners = 64;  // off by 0.08 % of the radius: 4 mm at 5 m, where outlines are simplified to 2 cm
   const double step_rad = 2.0 * M_PI / kCorners;
   const double reach_m = rest_m * std::sqrt(M_PI / (kCorners * std::tan(0.5 * step_rad)));  // equal areas
   for (int i = 0; i < kCorners; ++i) {

@@ -48,7 +48,7 @@ class RoundOnPlane {
 
   /// Whether any point within the rings is in the round.
   bool touches(const std::vector<Ring>& rings) const;
-  /// The cut as half-planes: a polygon of 128 corners and equal area, or a strip where a cylinder lies along the plane.
+  /// The cut as half-planes: a polygon of 64 corners and equal area, or a strip where a cylinder lies along the plane.
   /// Empty: the round does not reach the plane.
   std::optional<std::vector<HalfPlane>> half_planes() const;
 

@@ -54,7 +54,7 @@ struct RegionPlane {
   DescribedPlane plane;
   bool whole = false;  ///< all of its surface is
   /// On demand: what is in the region, in the basis of the plane's outline, largest first. Of spheres and cylinders the
-  /// circle is a polygon of 128 corners and equal area. Empty where they only touch.
+  /// circle is a polygon of 64 corners and equal area. Empty where they only touch.
   std::vector<Polygon> polygons;
   double area_m2 = 0.0;  ///< of these polygons; 0 where they were not asked for
 };
