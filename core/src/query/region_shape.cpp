@@ -124,6 +124,22 @@ Expected<RegionShape> shape(const CylinderRegion& cylinder) {
   return shape;
 }
 
+/// A polygon that stands for the unit circle: off by 0.08 % of the radius, 4 mm at 5 m, where outlines are simplified
+/// to 2 cm.
+struct UnitCircle {
+  std::array<Eigen::Vector2d, 64> normals;  ///< of its sides
+  double reach = 0.0;                       ///< of its sides from the middle, such that it has the circle's area
+
+  UnitCircle() {
+    const double step_rad = 2.0 * M_PI / static_cast<double>(normals.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      const double angle_rad = static_cast<double>(i) * step_rad;
+      normals[i] = {std::cos(angle_rad), std::sin(angle_rad)};
+    }
+    reach = std::sqrt(M_PI / (static_cast<double>(normals.size()) * std::tan(0.5 * step_rad)));
+  }
+};
+
 }  // namespace
 
 bool RegionShape::contains(const Eigen::Vector3d& p_m) const {
@@ -199,13 +215,10 @@ std::optional<std::vector<HalfPlane>> RoundOnPlane::half_planes() const {
     for (const double sign : {-1.0, 1.0}) add(sign * stretches[0] * axes_.col(0), rest_m);
     return half_planes;
   }
-  constexpr int kCorners = 64;  // off by 0.08 % of the radius: 4 mm at 5 m, where outlines are simplified to 2 cm
-  const double step_rad = 2.0 * M_PI / kCorners;
-  const double reach_m = rest_m * std::sqrt(M_PI / (kCorners * std::tan(0.5 * step_rad)));  // equal areas
-  for (int i = 0; i < kCorners; ++i) {
-    const Eigen::Vector2d on_circle(std::cos(i * step_rad), std::sin(i * step_rad));
-    add(axes_ * stretches.cwiseProduct(on_circle), reach_m);
-  }
+  static const UnitCircle kCircle;
+  const double reach_m = rest_m * kCircle.reach;
+  half_planes.reserve(kCircle.normals.size());
+  for (const Eigen::Vector2d& on_circle : kCircle.normals) add(axes_ * stretches.cwiseProduct(on_circle), reach_m);
   return half_planes;
 }
 
