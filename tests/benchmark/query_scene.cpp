@@ -128,9 +128,9 @@ QueryScene::QueryScene(std::size_t planes)
 std::shared_ptr<const MapSnapshot> QueryScene::seen_again(std::size_t planes) const {
   MapSnapshot::Parts parts = parts_;
   ++parts.revision;
-  const std::size_t step = std::max<std::size_t>(parts.planes.size() / std::max<std::size_t>(planes, 1), 1);
-  for (std::size_t i = 0; i < planes && i * step < parts.planes.size(); ++i) {
-    auto& record = parts.planes[i * step];
+  // 7,919 is prime: different ones of all kinds.
+  for (std::size_t i = 0; i < planes; ++i) {
+    auto& record = parts.planes[7919 * i % parts.planes.size()];
     record = std::make_shared<const PlaneRecord>(*record);
   }
   return std::make_shared<const MapSnapshot>(std::move(parts));

@@ -9,6 +9,7 @@
 #include <planemap/snapshot.hpp>
 #include <vector>
 
+#include "plane_blocks.hpp"
 #include "query/block_index.hpp"
 #include "query/plane_tree.hpp"
 #include "query/prepared_surface.hpp"
@@ -24,6 +25,7 @@ struct QueryIndex {
   std::vector<double> normal_deviations_rad;
   PlaneTree tree;
   std::shared_ptr<const BlockIndexTable> blocks;
+  PlaneBlocks plane_blocks{{}};  ///< for the next index: which blocks are to be looked at for changed planes
 
   /// Calls visit(cell view) for the dense cells whose virtual centres are in a box, in an order that depends on the map
   /// alone.

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "describe.hpp"
 #include "query/queries.hpp"
 #include "query/query_index.hpp"
 
@@ -43,15 +44,21 @@ void check_described(const MapSnapshot& snapshot, std::span<const DescribedPlane
 }
 
 std::unique_ptr<const QueryIndex> index_of(std::shared_ptr<const MapSnapshot> snapshot,
-                                           std::vector<DescribedPlane> planes,
+                                           std::optional<std::vector<DescribedPlane>> planes,
                                            const std::optional<Eigen::Vector3d>& gravity, const QueryIndex* previous) {
   if (gravity && !(gravity->allFinite() && gravity->norm() > 0.0)) {
     throw std::invalid_argument("SnapshotQueries: gravity must be finite and not zero");
   }
-  check_described(*snapshot, planes);
   auto index = std::make_unique<QueryIndex>();
   if (gravity) index->up = -gravity->normalized();
-  index->planes = std::move(planes);
+  index->plane_blocks = PlaneBlocks(snapshot->blocks(), previous != nullptr ? &previous->plane_blocks : nullptr);
+  if (planes) {
+    check_described(*snapshot, *planes);
+    index->planes = std::move(*planes);
+  } else {
+    const auto known = previous != nullptr ? std::span(previous->planes) : std::span<const DescribedPlane>{};
+    index->planes = describe_planes(*snapshot, gravity, known, index->plane_blocks);
+  }
   add_surfaces(previous, *index);
   index->blocks = previous != nullptr && previous->blocks->is_of(snapshot->blocks())
                       ? previous->blocks
@@ -63,12 +70,9 @@ std::unique_ptr<const QueryIndex> index_of(std::shared_ptr<const MapSnapshot> sn
 }  // namespace
 
 SnapshotQueries::SnapshotQueries(std::shared_ptr<const MapSnapshot> snapshot,
-                                 const std::optional<Eigen::Vector3d>& gravity, const SnapshotQueries* previous) {
-  auto planes =
-      describe_planes(*snapshot, gravity, previous != nullptr ? previous->planes() : std::span<const DescribedPlane>{});
-  index_ =
-      index_of(std::move(snapshot), std::move(planes), gravity, previous != nullptr ? previous->index_.get() : nullptr);
-}
+                                 const std::optional<Eigen::Vector3d>& gravity, const SnapshotQueries* previous)
+    : index_(index_of(std::move(snapshot), std::nullopt, gravity,
+                      previous != nullptr ? previous->index_.get() : nullptr)) {}
 
 SnapshotQueries::SnapshotQueries(std::shared_ptr<const MapSnapshot> snapshot, std::vector<DescribedPlane> planes,
                                  const std::optional<Eigen::Vector3d>& gravity, const SnapshotQueries* previous)
