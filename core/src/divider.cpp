@@ -6,7 +6,7 @@ namespace planemap {
 
 simd::ScanPlane scan_plane(const Plane* plane, const ScanFrame& frame) {
   constexpr double kSigmas = 4.5;
-  constexpr double kFloor_m = 0.01;
+  constexpr double kFloor_m = 0.015;
   simd::ScanPlane found;
   if (plane == nullptr) return found;
   if (plane->signed_distance_m(frame.T_world_sensor.translation()) <= 0.0) {

@@ -168,6 +168,13 @@ TEST(SpecialRooms, PillarHasFourFacesAtRightAngles) {
   });
 }
 
+TEST(SpecialRooms, ARoundColumnIsNoPlaneAndHidesNone) {
+  // That nothing wider than a facet lies on it is what all rooms have in common.
+  for_each_place("column", [](const MappedRoom& room) {
+    EXPECT_EQ(room.scored().count(Verdict::kCorrect), room.scored().surfaces.size()) << room.text();
+  });
+}
+
 TEST(SpecialRooms, WallsOfACorridorAreOnePlaneEachThoughSeenAtGrazingAngles) {
   for_each_place("corridor", [](const MappedRoom& room) {
     const PlaneRecord& left = room.plane_of("wall 1");

@@ -82,11 +82,16 @@ std::optional<CellHit> first_cell_in(const MapSnapshot& snapshot, const Block& b
   GridWalk walk(ray, snapshot.cell_size_m(), from_m, cells);
   do {
     if (walk.entry_m() > max_range_m) return std::nullopt;
-    const int ordinal = block.find(place_of(walk.index()));
-    if (ordinal < 0) continue;
-    const Cell& cell = block.cell(static_cast<std::size_t>(ordinal));
-    if (!snapshot.is_dense(cell) || !filter.passes_cell_of(cell.plane)) continue;
-    return describe(snapshot, block, static_cast<std::size_t>(ordinal), ray, walk.entry_m());
+    const int first = block.find(place_of(walk.index()));
+    if (first < 0) continue;
+    std::optional<CellHit> hit;  // of the two cells that a place may have, the nearer one
+    for (std::uint16_t at = static_cast<std::uint16_t>(first); at != Cell::kNoSecond; at = block.cell(at).second) {
+      const Cell& cell = block.cell(at);
+      if (!snapshot.is_dense(cell) || !filter.passes_cell_of(cell.plane)) continue;
+      CellHit found = describe(snapshot, block, at, ray, walk.entry_m());
+      if (!hit || found.range_m < hit->range_m) hit = found;
+    }
+    if (hit) return hit;
   } while (walk.step());
   return std::nullopt;
 }
