@@ -46,7 +46,6 @@ PlaneSlot PlaneMap::plane_through(const UncertainGrid& grid, CellRef ref) const 
     if (plane == nullptr) return;
     const double d_m = plane->signed_distance_m(centre_m);
     if (std::abs(d_m) > 0.5 * grid.cell_size_m() * plane->normal().lpNorm<1>()) return;
-    if (plane->normal().dot(cell.sums.view.cast<double>()) <= 0.0) return;
     const double scatter_m2 = evidence.mean_square_distance(plane->normal(), d_m);
     if (scatter_m2 >= least_m2) return;
     best = slot;

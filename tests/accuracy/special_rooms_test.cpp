@@ -123,6 +123,20 @@ TEST(SpecialRooms, CabinetFrontsAreTheirOwnPlanesSixCentimetresBeforeTheWall) {
   });
 }
 
+TEST(SpecialRooms, TopsAndUndersidesOfTwoTablesAreFourPlanes) {
+  for_each_place("table-tops", [](const MappedRoom& room) {
+    std::set<PlaneId> ids;
+    for (const std::string table : {"table 1", "table 2"}) {
+      const PlaneRecord& top = room.plane_of(table + " top");
+      const PlaneRecord& underside = room.plane_of(table + " underside");
+      EXPECT_NEAR(degrees_between(top, underside), 180.0, kNearDeg);
+      EXPECT_NEAR(before_m(top, underside), -0.04, kNearM);
+      ids.insert({top.id, underside.id});
+    }
+    EXPECT_EQ(ids.size(), 4U);
+  });
+}
+
 TEST(SpecialRooms, EachTreadAndEachRiserIsItsOwnPlane) {
   for_each_place("stairs", [](const MappedRoom& room) {
     std::set<PlaneId> ids = {room.plane_of("floor").id};
