@@ -172,4 +172,23 @@ Outline outline_of(const Plane& plane, const Eigen::Vector3d& centroid_m,
   return outline;
 }
 
+double signed_area_m2(const Ring& ring) {
+  double twice_m2 = 0.0;
+  for (std::size_t i = 2; i < ring.size(); ++i) {
+    const Eigen::Vector2d a = ring[i - 1] - ring[0];
+    const Eigen::Vector2d b = ring[i] - ring[0];
+    twice_m2 += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice_m2;
+}
+
+double area_m2(std::span<const Polygon> polygons) {
+  double area = 0.0;
+  for (const Polygon& polygon : polygons) {
+    area += signed_area_m2(polygon.outer);
+    for (const Ring& hole : polygon.holes) area += signed_area_m2(hole);
+  }
+  return area;
+}
+
 }  // namespace planemap

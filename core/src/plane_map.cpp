@@ -103,13 +103,17 @@ PlaneSlot PlaneMap::absorb_into(UncertainGrid& grid, const LocalPlane& local, Gl
   });
   PlaneSlot target = similar.front();
   for (std::size_t i = 1; i < similar.size(); ++i) {
-    const State& a = state(target);
-    const State& b = state(similar[i]);
-    if (!agree(a.statistics, a.fit, b.statistics, b.fit, max_angle_rad_, config_.plane_offset_m)) continue;
-    target = merge_planes(grid, target, similar[i]);
-    ++report.merged_planes;
+    target = merge_if_agreed(grid, target, similar[i], report);
   }
   return target;
+}
+
+PlaneSlot PlaneMap::merge_if_agreed(UncertainGrid& grid, PlaneSlot slot, PlaneSlot other, GlobalReport& report) {
+  const State& a = state(slot);
+  const State& b = state(other);
+  if (!agree(a.statistics, a.fit, b.statistics, b.fit, max_angle_rad_, config_.plane_offset_m)) return slot;
+  ++report.merged_planes;
+  return merge_planes(grid, slot, other);
 }
 
 PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) {
@@ -305,12 +309,7 @@ void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report)
   }
   refit(slot);
   for (const PlaneSlot other : touching(grid, state(slot).cells)) {
-    if (other == slot || !states_[other] || !states_[slot]) continue;
-    const State& a = state(slot);
-    const State& b = state(other);
-    if (!agree(a.statistics, a.fit, b.statistics, b.fit, max_angle_rad_, config_.plane_offset_m)) continue;
-    slot = merge_planes(grid, slot, other);
-    ++report.merged_planes;
+    if (other != slot && states_[other]) slot = merge_if_agreed(grid, slot, other, report);
   }
 }
 

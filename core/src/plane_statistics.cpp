@@ -46,7 +46,7 @@ void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre
   cells_ += sign;
   points_ += sign * n;
   if (cell.plane_weight > 0.0F) core_points_ += sign * n;
-  evidence_count_ += sign * static_cast<double>(cell.plane_weight) * static_cast<double>(cell.evidence_count);
+  evidence_count_ += sign * share * static_cast<double>(cell.evidence_count);
 }
 
 void PlaneStatistics::add(const PlaneStatistics& other) {

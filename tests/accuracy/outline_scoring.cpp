@@ -37,16 +37,6 @@ double distance_m(const Eigen::Vector2d& p_m, const std::vector<Segment>& border
   return least_m;
 }
 
-double signed_area_m2(const Ring& ring) {
-  double twice_m2 = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d& a = ring[i];
-    const Eigen::Vector2d& b = ring[(i + 1) % ring.size()];
-    twice_m2 += a.x() * b.y() - b.x() * a.y();
-  }
-  return twice_m2 / 2.0;
-}
-
 /// A ring in the surface's own basis.
 void append(const Ring& ring, const PlaneBasis& from, const PlaneBasis& to, std::vector<Segment>& border) {
   for (std::size_t i = 0; i < ring.size(); ++i) {

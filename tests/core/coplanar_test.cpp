@@ -8,27 +8,14 @@
 #include <planemap/mapper.hpp>
 #include <random>
 
+#include "plane_records.hpp"
 #include "rooms.hpp"
 
 namespace planemap {
 namespace {
 
 using Eigen::Vector3d;
-
-/// A piece of a plane that is level about its centroid to tilt_rad and known there to offset_m.
-PlaneRecord piece(PlaneId id, const Vector3d& centroid_m, const Vector3d& normal, double offset_m, double tilt_rad) {
-  PlaneRecord record;
-  record.id = id;
-  record.plane = Plane::through(centroid_m, normal.normalized());
-  record.centroid_m = centroid_m;
-  const Vector3d t1 = record.plane.normal().unitOrthogonal();
-  const Vector3d t2 = record.plane.normal().cross(t1);
-  Eigen::Matrix<double, 4, 3> of_tilts_and_offset;
-  of_tilts_and_offset << t1, t2, Vector3d::Zero(), -t1.dot(centroid_m), -t2.dot(centroid_m), 1.0;
-  const Vector3d variances(tilt_rad * tilt_rad, tilt_rad * tilt_rad, offset_m * offset_m);
-  record.covariance = of_tilts_and_offset * variances.asDiagonal() * of_tilts_and_offset.transpose();
-  return record;
-}
+using testing::record_of;
 
 constexpr double kSure = 1e-5;  // metres and radians
 
@@ -36,8 +23,8 @@ constexpr double kSure = 1e-5;  // metres and radians
 bool level_pieces_agree(double step_m, double about_x_rad, double about_y_rad, double offset_m = kSure,
                         double tilt_rad = kSure) {
   const Vector3d turned(std::sin(about_y_rad), -std::sin(about_x_rad), 1.0);
-  return are_coplanar(piece(1, {10.0, 4.0, 0.7}, Vector3d::UnitZ(), offset_m, tilt_rad),
-                      piece(2, {13.0, 4.0, 0.7 + step_m}, turned, offset_m, tilt_rad));
+  return are_coplanar(record_of(1, {10.0, 4.0, 0.7}, Vector3d::UnitZ(), offset_m, tilt_rad),
+                      record_of(2, {13.0, 4.0, 0.7 + step_m}, turned, offset_m, tilt_rad));
 }
 
 TEST(Coplanar, SurePlanesAgreeUpToACentimetre) {
@@ -75,20 +62,20 @@ TEST(Coplanar, WhereNobodyCanTellThereIsNoLink) {
 }
 
 TEST(Coplanar, TheTwoFacesOfASheetAreNotCoplanar) {
-  EXPECT_FALSE(are_coplanar(piece(1, {0.0, 0.0, 0.0}, Vector3d::UnitZ(), kSure, kSure),
-                            piece(2, {2.0, 0.0, 0.0}, -Vector3d::UnitZ(), kSure, kSure)));
+  EXPECT_FALSE(are_coplanar(record_of(1, {0.0, 0.0, 0.0}, Vector3d::UnitZ(), kSure, kSure),
+                            record_of(2, {2.0, 0.0, 0.0}, -Vector3d::UnitZ(), kSure, kSure)));
 }
 
 TEST(Coplanar, PiecesAboutOneCentreAreComparedOverAMetre) {
   // A picture frame and the picture: at half a metre to either side a tilt of 1.5 degrees shows as 13 mm.
-  const auto frame = piece(1, {5.0, 0.0, 1.0}, Vector3d::UnitX(), kSure, kSure);
-  EXPECT_TRUE(are_coplanar(frame, piece(2, {5.0, 0.0, 1.0}, {1.0, 0.01, 0.0}, kSure, kSure)));
-  EXPECT_FALSE(are_coplanar(frame, piece(2, {5.0, 0.0, 1.0}, {1.0, 0.05, 0.05}, kSure, kSure)));
+  const auto frame = record_of(1, {5.0, 0.0, 1.0}, Vector3d::UnitX(), kSure, kSure);
+  EXPECT_TRUE(are_coplanar(frame, record_of(2, {5.0, 0.0, 1.0}, {1.0, 0.01, 0.0}, kSure, kSure)));
+  EXPECT_FALSE(are_coplanar(frame, record_of(2, {5.0, 0.0, 1.0}, {1.0, 0.05, 0.05}, kSure, kSure)));
 }
 
 TEST(Coplanar, SmallPlanesAreLinkedWithNone) {
-  const auto a = piece(3, {0.0, 0.0, 0.7}, Vector3d::UnitZ(), kSure, kSure);
-  const auto b = piece(8, {4.0, 0.0, 0.7}, Vector3d::UnitZ(), kSure, kSure);
+  const auto a = record_of(3, {0.0, 0.0, 0.7}, Vector3d::UnitZ(), kSure, kSure);
+  const auto b = record_of(8, {4.0, 0.0, 0.7}, Vector3d::UnitZ(), kSure, kSure);
   const std::vector<SizedPlane> large = {{&a, 0.25}, {&b, 0.3}};
   EXPECT_EQ(coplanar_links(large), (CoplanarLinks{{3, {8}}, {8, {3}}}));
   const std::vector<SizedPlane> one_small = {{&a, 0.24}, {&b, 0.3}};
@@ -113,7 +100,7 @@ TEST(Coplanar, TheSearchFindsWhatComparingAllPairsFinds) {
         const Vector3d turned = n + 0.01 * Vector3d(normal(random), normal(random), normal(random));
         const double unsure = k % 2 == 0 ? 0.001 : 0.008;
         records.push_back(
-            piece(1 + records.size(), on_plane, k % 5 == 4 ? Vector3d(-turned) : turned, unsure, 0.2 * unsure));
+            record_of(1 + records.size(), on_plane, k % 5 == 4 ? Vector3d(-turned) : turned, unsure, 0.2 * unsure));
       }
     }
     std::vector<SizedPlane> planes;
@@ -136,14 +123,14 @@ TEST(Coplanar, TheSearchReachesAsFarAsTheComparison) {
   std::mt19937_64 random(19);
   std::normal_distribution<double> normal;
   const auto some_vector = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
-  const auto far = piece(3, Vector3d::Zero(), {1.0, 2.0, 3.0}, kSure, kSure);
+  const auto far = record_of(3, Vector3d::Zero(), {1.0, 2.0, 3.0}, kSure, kSure);
   int linked = 0;
   for (int round = 0; round < 20000; ++round) {
     const Vector3d n = some_vector().normalized();
     const Vector3d centre_m = 30.0 * some_vector().normalized();
-    const auto a = piece(1, centre_m, n, 0.010, 0.012);
+    const auto a = record_of(1, centre_m, n, 0.010, 0.012);
     const Vector3d beside_m = centre_m + 0.6 * n.unitOrthogonal() + 0.02 * normal(random) * n;
-    const auto b = piece(2, beside_m, n + 0.05 * some_vector(), 0.010, 0.012);
+    const auto b = record_of(2, beside_m, n + 0.05 * some_vector(), 0.010, 0.012);
     if (!are_coplanar(a, b)) continue;
     ++linked;
     std::vector<SizedPlane> planes(10, SizedPlane{&far, 1.0});

@@ -52,16 +52,6 @@ Outline outline_on(const Eigen::Isometry3d& pose, const std::vector<Eigen::Vecto
   return outline_of(Plane::through(pose.translation(), pose.linear().col(2)), pose.translation(), centres_m, kCellM);
 }
 
-double signed_area_m2(const Ring& ring) {
-  double twice_m2 = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Eigen::Vector2d& a = ring[i];
-    const Eigen::Vector2d& b = ring[(i + 1) % ring.size()];
-    twice_m2 += a.x() * b.y() - b.x() * a.y();
-  }
-  return twice_m2 / 2.0;
-}
-
 Eigen::Isometry3d pose_of(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation_m) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation.toRotationMatrix();

@@ -165,7 +165,9 @@ void visit_fields(Config& c, Visit&& visit) {
         c.plane_offset_m);
   visit(FieldInfo{"view_side", "surfaces seen from opposite sides are never one plane"}, c.view_side);
   visit(FieldInfo{"adoption", "cells without a plane join an adjacent one by their distance to it"}, c.adoption);
-  visit(FieldInfo{"splits", "cells that are sure of another surface leave their plane"}, c.splits);
+  visit(
+      FieldInfo{"splits", "flat pieces that make a crease are two planes, and take the cells that are nearer to them"},
+      c.splits);
   visit(FieldInfo{"crease_angle_deg", "flat pieces at more than this angle are two planes", 0.0, 90.0},
         c.crease_angle_deg);
   visit(FieldInfo{"bridge_gap_m", "coplanar pieces with a gap up to this are one plane; 0: off", 0.0, 10.0},

@@ -29,6 +29,11 @@ struct Polygon {
   std::vector<Ring> holes;  ///< clockwise
 };
 
+/// Positive for counter-clockwise rings.
+double signed_area_m2(const Ring& ring);
+/// Area of polygons, holes taken off.
+double area_m2(std::span<const Polygon> polygons);
+
 /// The seen part of a plane.
 struct Outline {
   PlaneBasis basis;

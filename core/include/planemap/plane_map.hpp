@@ -123,6 +123,8 @@ class PlaneMap {
   std::vector<CellRef> free_cells(const UncertainGrid& grid, const LocalPlane& local) const;
   void start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
   void settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report);
+  /// @return the plane that holds what slot held
+  PlaneSlot merge_if_agreed(UncertainGrid& grid, PlaneSlot slot, PlaneSlot other, GlobalReport& report);
   PlaneSlot merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b);
   void open_seconds(UncertainGrid& grid, std::span<const CellChange> changes);
   PlaneSlot plane_through(const UncertainGrid& grid, CellRef ref) const;

@@ -91,16 +91,6 @@ bool is_around(const Ring& ring, const Eigen::Vector2d& p_m) {
 
 }  // namespace
 
-double signed_area_m2(const Ring& ring) {
-  double twice_m2 = 0.0;
-  for (std::size_t i = 2; i < ring.size(); ++i) {
-    const Eigen::Vector2d a = ring[i - 1] - ring[0];
-    const Eigen::Vector2d b = ring[i] - ring[0];
-    twice_m2 += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice_m2;
-}
-
 std::vector<Ring> rings_of(std::span<const Polygon> polygons) {
   std::vector<Ring> rings;
   for (const Polygon& polygon : polygons) {
@@ -167,15 +157,6 @@ std::vector<Polygon> polygons_of(std::vector<Ring> rings) {
   std::reverse(outers.begin(), outers.end());
   for (Sized& outer : outers) polygons.push_back(std::move(outer.polygon));
   return polygons;
-}
-
-double area_m2(std::span<const Polygon> polygons) {
-  double area = 0.0;
-  for (const Polygon& polygon : polygons) {
-    area += signed_area_m2(polygon.outer);
-    for (const Ring& hole : polygon.holes) area += signed_area_m2(hole);
-  }
-  return area;
 }
 
 }  // namespace planemap

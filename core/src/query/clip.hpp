@@ -15,8 +15,6 @@ struct HalfPlane {
   double excess(const Eigen::Vector2d& p_m) const { return normal.dot(p_m) - offset_m; }
 };
 
-/// Positive for counter-clockwise rings.
-double signed_area_m2(const Ring& ring);
 /// All rings of polygons: outer ones counter-clockwise, holes clockwise.
 std::vector<Ring> rings_of(std::span<const Polygon> polygons);
 /// Whether all of the rings is in the half-plane.
@@ -26,7 +24,5 @@ void clip(std::vector<Ring>& rings, const HalfPlane& half_plane);
 /// Puts rings together: each hole into the smallest outer ring around it, largest polygon first. Slivers of less than a
 /// square micrometre are left out.
 std::vector<Polygon> polygons_of(std::vector<Ring> rings);
-/// Area of polygons, holes taken off.
-double area_m2(std::span<const Polygon> polygons);
 
 }  // namespace planemap

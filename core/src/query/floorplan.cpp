@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "query/argument_checks.hpp"
@@ -22,14 +21,8 @@ using PlanPolygon = bp::polygon_with_holes_data<int>;
 using PlanPoint = bp::point_data<int>;
 using Rings = std::vector<Ring>;
 
-constexpr double kUnitM = 1e-3;       // of whole-numbered plan coordinates, with which sets of polygons are exact
-constexpr double kFarthestM = 1e6;    // what is farther from the first floor is drawn there
-constexpr double kClosedGapM = 0.12;  // in a wall: what hangs on it, or a frame of the scan that missed it
-
-struct Interval {
-  double from_m;
-  double to_m;
-};
+constexpr double kUnitM = 1e-3;     // of whole-numbered plan coordinates, with which sets of polygons are exact
+constexpr double kFarthestM = 1e6;  // what is farther from the first floor is drawn there
 
 std::optional<Error> check_heights(const char* low_name, double low_m, const char* high_name, double high_m) {
   if (!std::isfinite(low_m) || low_m < 0.0) {
@@ -47,22 +40,11 @@ std::optional<Error> check(const FloorplanQuery& query, const MapSnapshot& snaps
   return check_filter(query.filter, snapshot);
 }
 
-/// World x to the right (where that is upright, y), then turned so that most of the walls' area runs along the axes.
 PlanAxes axes_of(const QueryIndex& index, const std::vector<const DescribedPlane*>& walls) {
-  PlanAxes axes;
-  axes.up = *index.up;
-  const Eigen::Vector3d reference = std::abs(axes.up.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d x = (reference - reference.dot(axes.up) * axes.up).normalized();
-  const Eigen::Vector3d y = axes.up.cross(x);
-  std::complex<double> sum;  // directions modulo a right angle
-  for (const DescribedPlane* wall : walls) {
-    const Eigen::Vector3d& n = wall->record->plane.normal();
-    sum += std::polar(wall->outline->area_m2, 4.0 * std::atan2(n.dot(y), n.dot(x)));
-  }
-  const double turn_rad = std::arg(sum) / 4.0;
-  axes.axis_x = std::cos(turn_rad) * x + std::sin(turn_rad) * y;
-  axes.axis_y = axes.up.cross(axes.axis_x);
-  return axes;
+  std::vector<SizedWall> sized;
+  sized.reserve(walls.size());
+  for (const DescribedPlane* wall : walls) sized.push_back({wall->record->plane.normal(), wall->outline->area_m2});
+  return plan_axes(*index.up, sized);
 }
 
 /// Between plan coordinates and whole numbers of units from an origin.
@@ -114,21 +96,6 @@ class PlanRaster {
 
   Eigen::Vector2d origin_m_;
 };
-
-/// Overlapping and nearly touching ones joined.
-std::vector<Interval> joined(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(),
-            [](const Interval& a, const Interval& b) { return a.from_m < b.from_m; });
-  std::vector<Interval> result;
-  for (const Interval& interval : intervals) {
-    if (!result.empty() && interval.from_m <= result.back().to_m + kClosedGapM) {
-      result.back().to_m = std::max(result.back().to_m, interval.to_m);
-    } else {
-      result.push_back(interval);
-    }
-  }
-  return result;
-}
 
 /// What of a wall stands between two heights, as strips in the plan.
 Rings strips_of(const DescribedPlane& wall, const PlanAxes& axes, double low_m, double high_m, double thickness_m) {

@@ -24,21 +24,6 @@ Eigen::Matrix3d Random::covariance(double sigma_m) {
   return sigma_m * sigma_m / 3.0 * (root * root.transpose());
 }
 
-PlaneRecord record_of(PlaneId id, const Vector3d& centroid_m, const Vector3d& normal, double offset_m,
-                      double tilt_rad) {
-  PlaneRecord record;
-  record.id = id;
-  record.plane = Plane::through(centroid_m, normal.normalized());
-  record.centroid_m = centroid_m;
-  const Vector3d t1 = record.plane.normal().unitOrthogonal();
-  const Vector3d t2 = record.plane.normal().cross(t1);
-  Eigen::Matrix<double, 4, 3> of_tilts_and_offset;
-  of_tilts_and_offset << t1, t2, Vector3d::Zero(), -t1.dot(centroid_m), -t2.dot(centroid_m), 1.0;
-  const Vector3d variances(tilt_rad * tilt_rad, tilt_rad * tilt_rad, offset_m * offset_m);
-  record.covariance = of_tilts_and_offset * variances.asDiagonal() * of_tilts_and_offset.transpose();
-  return record;
-}
-
 namespace {
 
 /// Corners around a centre, at random distances: never crosses itself.

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "plane_records.hpp"
+
 namespace planemap::testing {
 
 /// Made-up planes and cells, of which nothing is known to be in order.
@@ -39,9 +41,6 @@ class Random {
   std::normal_distribution<double> normal_;
 };
 
-/// A record of a plane through a point that is known there to offset_m and its normal to tilt_rad in either direction.
-PlaneRecord record_of(PlaneId id, const Eigen::Vector3d& centroid_m, const Eigen::Vector3d& normal, double offset_m,
-                      double tilt_rad);
 /// A rectangle about the record's centroid, along the axes of its basis.
 Outline rectangle(const PlaneRecord& record, double width_m, double height_m);
 DescribedPlane described(const PlaneRecord& record, const Outline& outline,

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -13,27 +12,6 @@ namespace planemap::cli {
 namespace {
 
 constexpr double kCutStepM = 0.1;
-constexpr double kClosedGapM = 0.12;  // in a wall: what hangs on it, or a frame of the scan that missed it
-
-struct Interval {
-  double from_m;
-  double to_m;
-};
-
-/// Overlapping and nearly touching ones joined.
-std::vector<Interval> joined(std::vector<Interval> intervals) {
-  std::sort(intervals.begin(), intervals.end(),
-            [](const Interval& a, const Interval& b) { return a.from_m < b.from_m; });
-  std::vector<Interval> result;
-  for (const Interval& interval : intervals) {
-    if (!result.empty() && interval.from_m <= result.back().to_m + kClosedGapM) {
-      result.back().to_m = std::max(result.back().to_m, interval.to_m);
-    } else {
-      result.push_back(interval);
-    }
-  }
-  return result;
-}
 
 std::vector<PlaneClass> classes_of(const ExportMap& map, const Eigen::Vector3d& down) {
   std::vector<Surface> surfaces;
@@ -44,23 +22,13 @@ std::vector<PlaneClass> classes_of(const ExportMap& map, const Eigen::Vector3d& 
   return classify(surfaces, down);
 }
 
-PlanFrame frame_of(const ExportMap& map, const std::vector<PlaneClass>& classes, const Eigen::Vector3d& up) {
-  PlanFrame frame;
-  frame.up = up;
-  // World x to the right, before the turn; where x is upright, y.
-  const Eigen::Vector3d reference = std::abs(up.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d x = (reference - reference.dot(up) * up).normalized();
-  const Eigen::Vector3d y = up.cross(x);
-  std::complex<double> sum;  // as in outlines: directions modulo a right angle, weighted by area
+PlanAxes axes_of(const ExportMap& map, const std::vector<PlaneClass>& classes, const Eigen::Vector3d& up) {
+  std::vector<SizedWall> walls;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     if (classes[i] != PlaneClass::kWall) continue;
-    const Eigen::Vector3d& n = map.planes[i].record.plane.normal();
-    sum += std::polar(map.planes[i].outline.area_m2, 4.0 * std::atan2(n.dot(y), n.dot(x)));
+    walls.push_back({map.planes[i].record.plane.normal(), map.planes[i].outline.area_m2});
   }
-  const double turn_rad = std::arg(sum) / 4.0;
-  frame.axis_x = std::cos(turn_rad) * x + std::sin(turn_rad) * y;
-  frame.axis_y = up.cross(frame.axis_x);
-  return frame;
+  return plan_axes(up, walls);
 }
 
 /// Height of the lowest floor; empty: none was seen.
@@ -75,7 +43,7 @@ std::optional<double> floor_height_m(const ExportMap& map, const std::vector<Pla
   return lowest_m;
 }
 
-PlanArea area_of(const ExportPlane& plane, PlaneClass plane_class, const PlanFrame& frame) {
+PlanArea area_of(const ExportPlane& plane, PlaneClass plane_class, const PlanAxes& frame) {
   PlanArea area;
   area.id = plane.record.id;
   area.floor = plane_class == PlaneClass::kFloor;
@@ -97,7 +65,7 @@ PlanArea area_of(const ExportPlane& plane, PlaneClass plane_class, const PlanFra
 /// A wall's boundary in (along, height), metres: along is measured on its trace in the plan.
 using Elevation = std::vector<std::vector<Point2>>;
 
-Elevation elevation_of(const ExportPlane& plane, const PlanFrame& frame, const Eigen::Vector3d& along) {
+Elevation elevation_of(const ExportPlane& plane, const PlanAxes& frame, const Eigen::Vector3d& along) {
   Elevation rings;
   const auto add = [&](const Ring& ring) {
     std::vector<Point2>& points = rings.emplace_back();
@@ -128,7 +96,7 @@ void cut_at(const Elevation& rings, double height_m, std::vector<Interval>& inte
   for (std::size_t i = 1; i < crossings_m.size(); i += 2) intervals.push_back({crossings_m[i - 1], crossings_m[i]});
 }
 
-PlanWall wall_of(const ExportPlane& plane, const PlanFrame& frame, const std::optional<double>& floor_m) {
+PlanWall wall_of(const ExportPlane& plane, const PlanAxes& frame, const std::optional<double>& floor_m) {
   const Eigen::Vector3d& n = plane.record.plane.normal();
   const Eigen::Vector3d level_normal = (n - n.dot(frame.up) * frame.up).normalized();
   const Eigen::Vector3d along = frame.up.cross(level_normal);
@@ -194,7 +162,7 @@ FloorPlan floor_plan_of(const ExportMap& map) {
   const std::vector<PlaneClass> classes = classes_of(map, down);
   const std::optional<double> floor_m = floor_height_m(map, classes, -down);
   FloorPlan plan;
-  plan.frame = frame_of(map, classes, -down);
+  plan.frame = axes_of(map, classes, -down);
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const ExportPlane& plane = map.planes[i];
     if (plane.outline.polygons.empty() || classes[i] == PlaneClass::kCeiling) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <planemap/plan.hpp>
 #include <vector>
 
 #include "export/export_map.hpp"
@@ -8,15 +9,6 @@
 namespace planemap::cli {
 
 using Point2 = Eigen::Vector2d;
-
-/// Axes of the drawing: looking down, x to the right, y up the page. Turned so that most walls run along them.
-struct PlanFrame {
-  Eigen::Vector3d axis_x;
-  Eigen::Vector3d axis_y;
-  Eigen::Vector3d up;
-
-  Point2 to_plan(const Eigen::Vector3d& p_world_m) const { return {p_world_m.dot(axis_x), p_world_m.dot(axis_y)}; }
-};
 
 /// A surface that is seen from above: level, or leaning.
 struct PlanArea {
@@ -47,7 +39,7 @@ constexpr double kCutHighM = 1.5;
 
 /// Planes as they are drawn in a floor plan. Ceilings are left out: they would hide everything.
 struct FloorPlan {
-  PlanFrame frame;
+  PlanAxes frame;
   std::vector<PlanArea> areas;  ///< lowest first
   std::vector<PlanWall> walls;
   Point2 min_m = Point2::Zero();

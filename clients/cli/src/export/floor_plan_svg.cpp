@@ -74,7 +74,7 @@ class Drawing {
   void lay_out() {
     Point2 size_m = plan_.max_m - plan_.min_m;
     if (size_m.y() > size_m.x()) {  // pages are wider than high
-      const PlanFrame upright = plan_.frame;
+      const PlanAxes upright = plan_.frame;
       plan_.frame.axis_x = upright.axis_y;
       plan_.frame.axis_y = -upright.axis_x;
       turned_ = true;

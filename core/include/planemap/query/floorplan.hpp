@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <planemap/outline.hpp>
+#include <planemap/plan.hpp>
 #include <planemap/query/plane_filter.hpp>
 #include <vector>
 
@@ -17,17 +18,6 @@ struct FloorplanQuery {
   double clear_low_m = 0.1;
   double clear_high_m = 1.8;
   PlaneFilter filter;  ///< of walls and floors; obstacles count whatever it says
-};
-
-/// Axes of the plan: a point is axis_x x + axis_y y + up height. Turned so that most walls run along them.
-struct PlanAxes {
-  Eigen::Vector3d axis_x = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d axis_y = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< axis_x x axis_y
-
-  Eigen::Vector2d to_plan(const Eigen::Vector3d& p_world_m) const {
-    return {p_world_m.dot(axis_x), p_world_m.dot(axis_y)};
-  }
 };
 
 /// Polygons in metres along the plan's axes, largest first: outer rings counter-clockwise seen from above.
