@@ -28,11 +28,16 @@ double min_max_deviation_rad(std::span<const UncertainCentre> centres, const Eig
   return std::atan(std::max(moved_1 / spread_1, moved_2 / spread_2));
 }
 
-void NormalEstimator::gather(const UncertainGrid& grid, CellRef ref) {
+void NormalEstimator::gather(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) {
   neighbourhood_.clear();
-  grid.for_each_neighbour(ref, config_.neighbourhood_depth, [&](CellRef other) {
+  const auto take = [&](CellRef other) {
     if (grid.cell(other).sums.count > 0.0) neighbourhood_.push_back(other);
-  });
+  };
+  if (config_.neighbourhood_depth == 1 && !around.empty()) {
+    std::for_each(around.begin(), around.end(), take);
+  } else {
+    grid.for_each_neighbour(ref, config_.neighbourhood_depth, take);
+  }
 }
 
 std::optional<NormalEstimator::Fit> NormalEstimator::fit_gathered(const UncertainGrid& grid, CellRef ref) const {
@@ -87,14 +92,15 @@ double NormalEstimator::allowed_variance_m2(double expected_m2) const {
          config_.flatness_floor_m * config_.flatness_floor_m;
 }
 
-std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const UncertainGrid& grid, CellRef ref) {
+std::optional<NormalEstimator::Fit> NormalEstimator::fit_own_surface(const UncertainGrid& grid, CellRef ref,
+                                                                     std::span<const CellRef> around) {
   neighbourhood_.assign(1, ref);
   std::optional<Fit> own = fit_gathered(grid, ref);
   // The own points must span a patch: a strip along an edge turns freely about it.
   const double least_spread_m = kLeastPatchSpread * grid.cell_size_m();
   if (!own || !is_flat(*own) || own->spread_1_m2 < least_spread_m * least_spread_m) return std::nullopt;
   const Eigen::Vector3d origin = grid.geometric_centre_m(ref);
-  gather(grid, ref);
+  gather(grid, ref, around);
   const auto elsewhere = [&](CellRef other) {
     const Cell& cell = grid.cell(other);
     if (!cell.has_evidence()) return true;
@@ -130,21 +136,22 @@ double NormalEstimator::deviation_rad(const UncertainGrid& grid, CellRef ref, co
   return min_max_deviation_rad(centres_, fit.normal, fit.tangent_1, fit.tangent_2);
 }
 
-std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, CellRef ref) {
-  gather(grid, ref);
+std::optional<UncertainNormal> NormalEstimator::fit(const UncertainGrid& grid, CellRef ref,
+                                                    std::span<const CellRef> around) {
+  gather(grid, ref, around);
   std::optional<Fit> fit = fit_gathered(grid, ref);
   if (fit && config_.view_side && drop_other_side(grid, ref, fit->normal)) fit = fit_gathered(grid, ref);
   // Beside an edge the neighbourhood holds two surfaces, and the cell may still lie on one of them.
-  if (fit && !is_flat(*fit)) fit = fit_own_surface(grid, ref);
+  if (fit && !is_flat(*fit)) fit = fit_own_surface(grid, ref, around);
   if (!fit) return std::nullopt;
   return UncertainNormal{fit->normal, deviation_rad(grid, ref, *fit)};
 }
 
-void NormalEstimator::refresh(UncertainGrid& grid, CellRef ref) {
+void NormalEstimator::refresh(UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) {
   const Cell& cell = grid.cell(ref);
   const double count = cell.sums.count;
   if (cell.normal_count > 0.0F && count < cell.normal_count * (1.0 + config_.refresh_growth)) return;
-  const std::optional<UncertainNormal> fitted = fit(grid, ref);
+  const std::optional<UncertainNormal> fitted = fit(grid, ref, around);
   Cell& changed = grid.writable(ref);
   changed.normal_count = static_cast<float>(count);
   changed.normal = fitted ? Eigen::Vector3f(fitted->normal.cast<float>()) : Eigen::Vector3f::Zero();

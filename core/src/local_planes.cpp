@@ -19,121 +19,162 @@ bool LocalPlaneExtractor::eligible(const Cell& cell) const {
          static_cast<double>(cell.deviation_rad) <= normal_config_.max_deviation_deg * kRadPerDeg;
 }
 
-std::vector<std::uint32_t> LocalPlaneExtractor::seeds(const UncertainGrid& grid,
-                                                      std::span<const CellChange> changes) const {
-  std::vector<std::uint32_t> order;  // Fig. 3, line 4: the dense cells
-  for (std::uint32_t i = 0; i < changes.size(); ++i) {
-    if (eligible(grid.cell(changes[i].cell))) order.push_back(i);
-  }
-  if (config_.best_seeds_first) {
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return grid.cell(changes[a].cell).deviation_rad < grid.cell(changes[b].cell).deviation_rad;
-    });
-  }
-  return order;
-}
-
-std::vector<LocalPlane> LocalPlaneExtractor::extract(const UncertainGrid& grid, std::span<const CellChange> changes) {
-  visited_.assign(changes.size(), 0);
+std::span<const LocalPlane> LocalPlaneExtractor::extract(const UncertainGrid& grid, std::span<const CellChange> changes,
+                                                         const Neighbourhoods& neighbourhoods) {
+  list_candidates(grid, changes, neighbourhoods);
+  sort_seeds();
+  plane_count_ = 0;
   visitor_ = 0;
   aside_.clear();
-  const std::vector<std::uint32_t> order = seeds(grid, changes);
-  std::vector<LocalPlane> planes;
-  const auto grow_all = [&](bool strict) {
-    for (const std::uint32_t seed : order) {
-      if (visited_[seed] == kTaken) continue;
-      const std::size_t number = planes.size();
-      planes.push_back(start(grid, changes[seed].cell));
-      grow(grid, planes.back(), 0, strict ? &number : nullptr);
-    }
-  };
   if (config_.splits) {
     // What lies aside of a plane is kept out of it where it makes a plane of its own. Else the plane takes it, too: a
     // real sensor bends what is flat.
-    grow_all(true);
-    for (LocalPlane& plane : planes) release_small(grid, plane);
-    for (const auto& [number, ref] : aside_) take_aside(grid, ref, planes[number]);
+    grow_all(grid, changes, true);
+    for (std::size_t number = 0; number < plane_count_; ++number) release_small(number);
+    for (const auto& [number, change] : aside_) take_aside(grid, changes, change, number);
   }
-  grow_all(false);
-  const auto is_none = [&](LocalPlane& plane) {
-    const auto fit = plane.cells.empty() ? std::nullopt : plane.statistics.fit(config_.pooled_refit);
-    if (fit) plane.fit = *fit;
-    return !fit;
-  };
-  std::erase_if(planes, is_none);
-  return planes;
+  grow_all(grid, changes, false);
+  leave_out_those_without_fit();
+  return {planes_.data(), plane_count_};
 }
 
-void LocalPlaneExtractor::release_small(const UncertainGrid& grid, LocalPlane& plane) {
+void LocalPlaneExtractor::list_candidates(const UncertainGrid& grid, std::span<const CellChange> changes,
+                                          const Neighbourhoods& neighbourhoods) {
+  candidates_.resize(changes.size());
+  seeds_.clear();
+  neighbours_.clear();
+  for (std::uint32_t i = 0; i < changes.size(); ++i) {
+    const Cell& cell = grid.cell(changes[i].cell);
+    Candidate& candidate = candidates_[i];
+    candidate.visitor = kTaken;
+    if (!eligible(cell)) continue;
+    candidate.visitor = 0;
+    candidate.normal = cell.normal.cast<double>();
+    candidate.middle_m = grid.middle_m(changes[i].cell);
+    candidate.deviation_rad = static_cast<double>(cell.deviation_rad);
+    seeds_.push_back(i);
+  }
+  for (const std::uint32_t i : seeds_) {
+    candidates_[i].first_neighbour = static_cast<std::uint32_t>(neighbours_.size());
+    for (const CellRef other : neighbourhoods.around(i)) {
+      const std::uint32_t change = grid.cell(other).working;
+      if (change != Cell::kNotWorking && candidates_[change].visitor != kTaken) neighbours_.push_back(change);
+    }
+    candidates_[i].last_neighbour = static_cast<std::uint32_t>(neighbours_.size());
+  }
+}
+
+void LocalPlaneExtractor::sort_seeds() {
+  if (!config_.best_seeds_first) return;
+  std::sort(seeds_.begin(), seeds_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double first = candidates_[a].deviation_rad;
+    const double second = candidates_[b].deviation_rad;
+    return first != second ? first < second : a < b;
+  });
+}
+
+void LocalPlaneExtractor::grow_all(const UncertainGrid& grid, std::span<const CellChange> changes, bool strict) {
+  for (const std::uint32_t seed : seeds_) {
+    if (candidates_[seed].visitor == kTaken) continue;
+    grow(grid, changes, start(grid, changes[seed].cell, seed), 0, strict);
+  }
+}
+
+std::size_t LocalPlaneExtractor::start(const UncertainGrid& grid, CellRef first, std::uint32_t change) {
+  const std::size_t number = plane_count_++;
+  const PlaneStatistics none(grid.geometric_centre_m(first));
+  if (number == planes_.size()) {
+    planes_.push_back({none, {}, {}});
+    members_.emplace_back();
+  }
+  LocalPlane& plane = planes_[number];
+  plane.statistics = none;
+  plane.fit = {};
+  plane.cells.clear();
+  members_[number].clear();
+  // The plane starts as its first cell: its normal, through its virtual centre.
+  const Candidate& seed = candidates_[change];
+  plane.fit.plane = Plane::through(seed.middle_m, seed.normal);
+  plane.fit.deviation_rad = seed.deviation_rad;
+  ++visitor_;
+  take(grid, first, change, number);
+  return number;
+}
+
+void LocalPlaneExtractor::take(const UncertainGrid& grid, CellRef ref, std::uint32_t change, std::size_t number) {
+  candidates_[change].visitor = kTaken;
+  planes_[number].statistics.add_whole(grid.cell(ref), grid.geometric_centre_m(ref));
+  planes_[number].cells.push_back(ref);
+  members_[number].push_back(change);
+}
+
+void LocalPlaneExtractor::release_small(std::size_t number) {
+  LocalPlane& plane = planes_[number];
   if (static_cast<double>(plane.cells.size()) >= config_.min_cells) return;
-  for (const CellRef ref : plane.cells) visited_[grid.cell(ref).working] = 0;
+  for (const std::uint32_t change : members_[number]) candidates_[change].visitor = 0;
   plane.cells.clear();
 }
 
-void LocalPlaneExtractor::take_aside(const UncertainGrid& grid, CellRef ref, LocalPlane& plane) {
-  std::uint32_t& visited = visited_[grid.cell(ref).working];
-  if (plane.cells.empty() || visited == kTaken || !similar(grid, ref, plane.fit)) return;
+void LocalPlaneExtractor::take_aside(const UncertainGrid& grid, std::span<const CellChange> changes,
+                                     std::uint32_t change, std::size_t number) {
+  const LocalPlane& plane = planes_[number];
+  const Candidate& cell = candidates_[change];
+  if (plane.cells.empty() || cell.visitor == kTaken || !similar(cell, plane.fit)) return;
   ++visitor_;
-  visited = kTaken;
-  take(grid, ref, plane);
-  grow(grid, plane, plane.cells.size() - 1, nullptr);
+  take(grid, changes[change].cell, change, number);
+  grow(grid, changes, number, plane.cells.size() - 1, false);
 }
 
-bool LocalPlaneExtractor::similar(const UncertainGrid& grid, CellRef ref, const PlaneFit& plane) const {
-  const Cell& cell = grid.cell(ref);
-  if (!eligible(cell)) return false;
-  if (expected_squared_distance(plane.plane.normal(), plane.deviation_rad, cell.normal.cast<double>(),
-                                static_cast<double>(cell.deviation_rad)) >= squared_chord_) {
+bool LocalPlaneExtractor::similar(const Candidate& cell, const PlaneFit& plane) const {
+  if (expected_squared_distance(plane.plane.normal(), plane.deviation_rad, cell.normal, cell.deviation_rad) >=
+      squared_chord_) {
     return false;
   }
-  return !config_.offset_test || std::abs(plane.plane.signed_distance_m(grid.middle_m(ref))) < config_.cell_offset_m;
+  return !config_.offset_test || std::abs(plane.plane.signed_distance_m(cell.middle_m)) < config_.cell_offset_m;
 }
 
-LocalPlane LocalPlaneExtractor::start(const UncertainGrid& grid, CellRef first) {
-  const Cell& cell = grid.cell(first);
-  LocalPlane plane{PlaneStatistics(grid.geometric_centre_m(first)), {}, {}};
-  // The plane starts as its first cell: its normal, through its virtual centre.
-  plane.fit.plane = Plane::through(grid.middle_m(first), cell.normal.cast<double>());
-  plane.fit.deviation_rad = static_cast<double>(cell.deviation_rad);
-  ++visitor_;
-  visited_[cell.working] = kTaken;
-  take(grid, first, plane);
-  return plane;
-}
-
-void LocalPlaneExtractor::take(const UncertainGrid& grid, CellRef ref, LocalPlane& plane) {
-  Cell member = grid.cell(ref);
-  member.plane_weight = 1.0F;
-  plane.statistics.add(member, grid.geometric_centre_m(ref));
-  plane.cells.push_back(ref);
-}
-
-void LocalPlaneExtractor::grow(const UncertainGrid& grid, LocalPlane& plane, std::size_t from,
-                               const std::size_t* number) {
+void LocalPlaneExtractor::grow(const UncertainGrid& grid, std::span<const CellChange> changes, std::size_t number,
+                               std::size_t from, bool strict) {
+  LocalPlane& plane = planes_[number];
   // Fewer cells tilt more than the first cell's normal does; later a fit that gained an eighth is as good as any.
   const auto next_refit = [&](std::size_t cells) {
     return config_.pooled_refit ? std::max<std::size_t>(6, cells + 1 + cells / 8) : cells + 1;
   };
   std::size_t refit_at = plane.cells.size() == 1 ? (config_.pooled_refit ? 6 : 1) : next_refit(plane.cells.size());
   for (std::size_t next = from; next < plane.cells.size(); ++next) {
-    grid.for_each_neighbour(plane.cells[next], 1, [&](CellRef other) {
-      const std::uint32_t change = grid.cell(other).working;
-      if (change == Cell::kNotWorking || visited_[change] == kTaken || visited_[change] == visitor_) return;
-      visited_[change] = visitor_;
-      if (!similar(grid, other, plane.fit)) return;
+    const Candidate& at = candidates_[members_[number][next]];
+    for (std::uint32_t i = at.first_neighbour; i < at.last_neighbour; ++i) {
+      const std::uint32_t change = neighbours_[i];
+      Candidate& other = candidates_[change];
+      if (other.visitor == kTaken || other.visitor == visitor_) continue;
+      other.visitor = visitor_;
+      if (!similar(other, plane.fit)) continue;
+      const CellRef ref = changes[change].cell;
       // Its weight is known once it was fitted.
-      if (number != nullptr && plane.fit.weight > 0.0 &&
-          lies_aside(grid.cell(other), grid.geometric_centre_m(other), plane.fit.plane, grid.cell_size_m())) {
-        aside_.emplace_back(*number, other);
-        return;
+      if (strict && plane.fit.weight > 0.0 &&
+          lies_aside(grid.cell(ref), grid.geometric_centre_m(ref), plane.fit.plane, grid.cell_size_m())) {
+        aside_.emplace_back(number, change);
+        continue;
       }
-      visited_[change] = kTaken;
-      take(grid, other, plane);
-      if (plane.cells.size() < refit_at) return;
+      take(grid, ref, change, number);
+      if (plane.cells.size() < refit_at) continue;
       if (const auto fit = plane.statistics.fit(config_.pooled_refit)) plane.fit = *fit;
       refit_at = next_refit(plane.cells.size());
-    });
+    }
   }
+}
+
+void LocalPlaneExtractor::leave_out_those_without_fit() {
+  std::size_t kept = 0;
+  for (std::size_t number = 0; number < plane_count_; ++number) {
+    LocalPlane& plane = planes_[number];
+    const auto fit = plane.cells.empty() ? std::nullopt : plane.statistics.fit(config_.pooled_refit);
+    if (!fit) continue;
+    plane.fit = *fit;
+    if (kept != number) std::swap(planes_[kept], plane);  // both keep their memory
+    ++kept;
+  }
+  plane_count_ = kept;
 }
 
 }  // namespace planemap

@@ -3,6 +3,7 @@
 #include "planemap/assignment.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/local_planes.hpp"
+#include "planemap/neighbourhoods.hpp"
 #include "planemap/plane_map.hpp"
 #include "planemap/uncertain_grid.hpp"
 #include "planemap/wear.hpp"
@@ -50,14 +51,14 @@ class Mapper::Impl {
     utime_ = std::max(utime_, pose.utime);
     assign(scan, pose.T_world_sensor, observer, report);
     fit_normals(observer);
-    std::vector<LocalPlane> local;
+    std::span<const LocalPlane> local;
     {
       const StageScope scope(observer, Stage::kLocalPlanes);  // Fig. 3, lines 4 and 5
-      local = local_.extract(grid_, assigner_.changes());
+      local = local_.extract(grid_, assigner_.changes(), neighbourhoods_);
     }
     {
       const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
-      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), pose);
+      const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), neighbourhoods_, pose);
       report.local_planes = local.size();
       report.new_planes = global.new_planes;
       report.merged_planes = global.merged_planes;
@@ -134,8 +135,12 @@ class Mapper::Impl {
 
   void fit_normals(StageObserver* observer) {
     const StageScope scope(observer, Stage::kNormals);
-    for (const CellChange& change : assigner_.changes()) {
-      if (grid_.cell(change.cell).sums.count > config_.grid.density_threshold) normals_.refresh(grid_, change.cell);
+    neighbourhoods_.gather(grid_, assigner_.changes());
+    for (std::uint32_t i = 0; i < assigner_.changes().size(); ++i) {
+      const CellRef ref = assigner_.changes()[i].cell;
+      if (grid_.cell(ref).sums.count > config_.grid.density_threshold) {
+        normals_.refresh(grid_, ref, neighbourhoods_.around(i));
+      }
     }
     for (const CellChange& change : assigner_.changes()) planes_.attach(grid_, change.cell);
   }
@@ -160,6 +165,7 @@ class Mapper::Impl {
   std::int64_t utime_ = 0;
   UncertainGrid grid_;
   Assigner assigner_;
+  Neighbourhoods neighbourhoods_;
   NormalEstimator normals_;
   LocalPlaneExtractor local_;
   PlaneMap planes_;

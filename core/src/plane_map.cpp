@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "angles.hpp"
@@ -73,33 +74,37 @@ bool PlaneMap::are_creased(const PlaneStatistics& a, const PlaneFit& fit_a, cons
   return angle_rad > config_.crease_angle_deg * kRadPerDeg + kSigmas * sigma_rad;
 }
 
-std::vector<PlaneSlot> PlaneMap::touching(const UncertainGrid& grid, const std::vector<CellRef>& cells) const {
-  std::vector<PlaneSlot> found;
-  PlaneSlot last = kNoSlot;
+/// Adds the planes of cells to touching_.
+void PlaneMap::note_touching(const UncertainGrid& grid, std::span<const CellRef> cells) {
   for (const CellRef ref : cells) {
-    grid.for_each_neighbour(ref, 1, [&](CellRef other) {
-      const PlaneSlot slot = grid.cell(other).plane;
-      if (slot == kNoSlot || slot == last) return;
-      last = slot;
-      found.push_back(slot);
-    });
+    const PlaneSlot slot = grid.cell(ref).plane;
+    if (slot == kNoSlot || noted_in_[slot] == search_) continue;
+    noted_in_[slot] = search_;
+    touching_.push_back(slot);
   }
-  sort_unique(found);
-  return found;
 }
 
-PlaneSlot PlaneMap::absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report) {
-  std::vector<PlaneSlot> similar;
-  for (const PlaneSlot slot : touching(grid, local.cells)) {
+void PlaneMap::begin_touching() {
+  touching_.clear();
+  noted_in_.resize(states_.size(), 0);
+  ++search_;
+}
+
+PlaneSlot PlaneMap::absorb_into(UncertainGrid& grid, const LocalPlane& local, const Neighbourhoods& neighbourhoods,
+                                GlobalReport& report) {
+  begin_touching();
+  for (const CellRef ref : local.cells) note_touching(grid, neighbourhoods.around(grid.cell(ref).working));
+  std::vector<PlaneSlot>& similar = touching_;
+  std::erase_if(similar, [&](PlaneSlot slot) {
     const State& global = state(slot);
-    if (agree(local.statistics, local.fit, global.statistics, global.fit, max_angle_rad_, config_.plane_offset_m)) {
-      similar.push_back(slot);
-    }
-  }
+    return !agree(local.statistics, local.fit, global.statistics, global.fit, max_angle_rad_, config_.plane_offset_m);
+  });
   if (similar.empty()) return kNoSlot;
   // The best-supported one decides; others merge with it only if they agree with it themselves.
-  std::stable_sort(similar.begin(), similar.end(), [&](PlaneSlot a, PlaneSlot b) {
-    return state(a).statistics.cell_count() > state(b).statistics.cell_count();
+  std::sort(similar.begin(), similar.end(), [&](PlaneSlot a, PlaneSlot b) {
+    const std::size_t cells_a = state(a).statistics.cell_count();
+    const std::size_t cells_b = state(b).statistics.cell_count();
+    return cells_a != cells_b ? cells_a > cells_b : a < b;
   });
   PlaneSlot target = similar.front();
   for (std::size_t i = 1; i < similar.size(); ++i) {
@@ -164,8 +169,8 @@ bool PlaneMap::is_nearer(const UncertainGrid& grid, CellRef ref, const PlaneFit&
   return scatter_m2(a) < scatter_m2(b);
 }
 
-std::vector<CellRef> PlaneMap::free_cells(const UncertainGrid& grid, const LocalPlane& local) const {
-  std::vector<CellRef> free;
+std::span<const CellRef> PlaneMap::free_cells(const UncertainGrid& grid, const LocalPlane& local) {
+  free_.clear();
   PlaneSlot last = kNoSlot;
   bool creased = false;
   for (const CellRef ref : local.cells) {
@@ -174,13 +179,13 @@ std::vector<CellRef> PlaneMap::free_cells(const UncertainGrid& grid, const Local
       creased = are_creased(local.statistics, local.fit, state(slot).statistics, state(slot).fit);
     }
     last = slot;
-    if (slot == kNoSlot || (creased && is_nearer(grid, ref, local.fit, state(slot).fit))) free.push_back(ref);
+    if (slot == kNoSlot || (creased && is_nearer(grid, ref, local.fit, state(slot).fit))) free_.push_back(ref);
   }
-  return free;
+  return free_;
 }
 
 void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
-  const std::vector<CellRef> free = free_cells(grid, local);
+  const std::span<const CellRef> free = free_cells(grid, local);
   if (static_cast<double>(free.size()) < config_.min_cells) return;
   if (local.fit.width_m() < config_.min_width_cells * grid.cell_size_m()) return;
   // A strip of hardly more than one cell's width leans to whatever is beside it, unless its cells hold nothing else.
@@ -197,8 +202,9 @@ void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t 
   ++report.new_planes;
 }
 
-void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
-  const PlaneSlot target = absorb_into(grid, local, report);
+void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, const Neighbourhoods& neighbourhoods,
+                           std::int64_t utime, GlobalReport& report) {
+  const PlaneSlot target = absorb_into(grid, local, neighbourhoods, report);
   if (target == kNoSlot) {
     start(grid, local, utime, report);
     return;
@@ -215,12 +221,13 @@ void PlaneMap::merge_local(UncertainGrid& grid, const LocalPlane& local, std::in
 }
 
 GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> local,
-                             std::span<const CellChange> changes, const ScanPose& scan) {
+                             std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods,
+                             const ScanPose& scan) {
   GlobalReport report;
   take_pose(scan);
-  for (const LocalPlane& plane : local) merge_local(grid, plane, scan.utime, report);
+  for (const LocalPlane& plane : local) merge_local(grid, plane, neighbourhoods, scan.utime, report);
   if (config_.adoption) {
-    adopt(grid, changes);
+    adopt(grid, changes, neighbourhoods);
     for (const PlaneSlot slot : born_) settle(grid, slot, report);
   }
   born_.clear();
@@ -251,43 +258,46 @@ void PlaneMap::take_pose(const ScanPose& scan) {
 
 // What lifts the paper.
 
-PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref) const {
+PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const {
   const Cell& cell = grid.cell(ref);
   const Eigen::Vector3d centre_m = grid.middle_m(ref);
   const double own_cells = cell.plane == kNoSlot ? 0.0 : static_cast<double>(state(cell.plane).statistics.cell_count());
   // Near an edge a normal may be wrong by 25 degrees, but not by a right angle.
   constexpr double kAdoptingCosine = 0.7;
+  const auto sibling = grid.sibling(ref);
+  const PlaneSlot sibling_plane = sibling ? grid.cell(*sibling).plane : kNoSlot;
   PlaneSlot best = kNoSlot;
   double best_distance_m = std::numeric_limits<double>::infinity();
-  grid.for_each_neighbour(ref, 1, [&](CellRef other) {
+  for (const CellRef other : around) {
     const PlaneSlot slot = grid.cell(other).plane;
-    if (slot == kNoSlot || slot == cell.plane || slot == best || is_sibling(grid, ref, slot)) return;
+    if (slot == kNoSlot || slot == cell.plane || slot == best || slot == sibling_plane) continue;
     const State& plane = state(slot);
     const Eigen::Vector3d& normal = plane.fit.plane.normal();
-    if (config_.view_side && normal.dot(cell.sums.view.cast<double>()) <= 0.0) return;
-    if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < kAdoptingCosine) return;
+    if (config_.view_side && normal.dot(cell.sums.view.cast<double>()) <= 0.0) continue;
+    if (cell.has_normal() && normal.dot(cell.normal.cast<double>()) < kAdoptingCosine) continue;
     const double distance_m = std::abs(plane.fit.plane.signed_distance_m(centre_m));
-    if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) return;
+    if (distance_m >= best_distance_m || distance_m > band_m(cell, plane.fit)) continue;
     if (distance_m > config_.cell_offset_m || cell.plane != kNoSlot) {
       // A layer of the plane's slab: the plane's own cells lie behind or before it, not beside it.
       const Eigen::Vector3d step = grid.middle_m(other) - centre_m;
-      if (std::abs(normal.dot(step)) < 0.5 * step.norm()) return;
+      if (std::abs(normal.dot(step)) < 0.5 * step.norm()) continue;
     }
     if (cell.plane != kNoSlot && static_cast<double>(plane.statistics.cell_count()) < config_.slab_ratio * own_cells) {
-      return;
+      continue;
     }
     best = slot;
     best_distance_m = distance_m;
-  });
+  }
   return best;
 }
 
-void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes) {
-  for (const CellChange& change : changes) {
+void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods) {
+  for (std::uint32_t i = 0; i < changes.size(); ++i) {
+    const CellChange& change = changes[i];
     const Cell& cell = grid.cell(change.cell);
     if (cell.sums.count <= grid_config_.density_threshold) continue;
     if (cell.plane != kNoSlot && !(config_.slab_sigmas > 0.0)) continue;
-    const PlaneSlot slot = best_neighbour(grid, change.cell);
+    const PlaneSlot slot = best_neighbour(grid, change.cell, neighbourhoods.around(i));
     if (slot == kNoSlot) continue;
     take(grid, change.cell, slot);
   }
@@ -297,37 +307,49 @@ void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes) {
 /// there again.
 void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report) {
   if (!states_[slot]) return;
+  const auto look_around = [&](CellRef ref) {
+    around_.clear();
+    grid.for_each_neighbour(ref, 1, [&](CellRef other) { around_.push_back(other); });
+  };
   for (std::size_t next = 0; next < state(slot).cells.size(); ++next) {
-    std::vector<CellRef> around;
-    grid.for_each_neighbour(state(slot).cells[next], 1, [&](CellRef other) {
+    look_around(state(slot).cells[next]);
+    unlabelled_.clear();
+    std::copy_if(around_.begin(), around_.end(), std::back_inserter(unlabelled_), [&](CellRef other) {
       const Cell& cell = grid.cell(other);
-      if (cell.plane == kNoSlot && cell.sums.count > grid_config_.density_threshold) around.push_back(other);
+      return cell.plane == kNoSlot && cell.sums.count > grid_config_.density_threshold;
     });
-    for (const CellRef ref : around) {
-      if (best_neighbour(grid, ref) == slot) join(grid, ref, slot);
+    for (const CellRef ref : unlabelled_) {
+      look_around(ref);
+      if (best_neighbour(grid, ref, around_) == slot) join(grid, ref, slot);
     }
   }
   refit(slot);
-  for (const PlaneSlot other : touching(grid, state(slot).cells)) {
+  begin_touching();
+  for (const CellRef ref : state(slot).cells) {
+    look_around(ref);
+    note_touching(grid, around_);
+  }
+  std::sort(touching_.begin(), touching_.end());
+  for (const PlaneSlot other : touching_) {
     if (other != slot && states_[other]) slot = merge_if_agreed(grid, slot, other, report);
   }
 }
 
-PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const {
+PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) {
   const State& plane = state(slot);
-  std::vector<std::uint64_t> seen;
-  std::vector<PlaneSlot> near;
+  cubes_.clear();
+  near_.clear();
   for (const CellRef ref : plane.cells) {
     if (grid.cell(ref).plane != slot) continue;
     const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
     const std::uint64_t key = coarse_.key_of(centre_m);
-    if (!seen.empty() && seen.back() == key) continue;
-    if (std::find(seen.begin(), seen.end(), key) != seen.end()) continue;
-    seen.push_back(key);
-    coarse_.planes_near(centre_m, 2, near);
+    if (!cubes_.empty() && cubes_.back() == key) continue;
+    if (std::find(cubes_.begin(), cubes_.end(), key) != cubes_.end()) continue;
+    cubes_.push_back(key);
+    coarse_.planes_near(centre_m, 2, near_);
   }
-  sort_unique(near);
-  for (const PlaneSlot other : near) {
+  sort_unique(near_);
+  for (const PlaneSlot other : near_) {
     if (other == slot) continue;
     const State& partner = state(other);
     // Two tables of one height are two tables: only pieces that are large against the gap are taken for one surface.
@@ -342,8 +364,8 @@ PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) co
 }
 
 void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
-  const std::vector<PlaneSlot> candidates = touched_;
-  for (PlaneSlot slot : candidates) {
+  candidates_ = touched_;
+  for (PlaneSlot slot : candidates_) {
     while (states_[slot]) {
       State& plane = state(slot);
       const std::size_t cells = plane.statistics.cell_count();
@@ -362,8 +384,8 @@ void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
 }
 
 void PlaneMap::dissolve_small(UncertainGrid& grid, GlobalReport& report) {
-  const std::vector<PlaneSlot> candidates = touched_;
-  for (const PlaneSlot slot : candidates) {
+  candidates_ = touched_;
+  for (const PlaneSlot slot : candidates_) {
     if (!states_[slot] || 3 * state(slot).statistics.cell_count() >= static_cast<std::size_t>(config_.min_cells))
       continue;
     dissolve(grid, slot);

@@ -24,11 +24,10 @@ double PlaneFit::extent_m() const {
   return std::sqrt(12.0 * std::max(spread_2_m2, 0.0));
 }
 
-void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign) {
+void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign, double share) {
   const Eigen::Vector3d shift_m = centre_m - origin_m_;
   const double n = cell.sums.count;
   const Moments evidence = cell.evidence.unpacked();
-  const auto share = static_cast<double>(cell.plane_weight);
   pooled_.add(evidence, sign * share, shift_m);
   if (share > 0.0 && evidence.weight > 0.0) {
     means_.add(Symmetric3::outer(shift_m + evidence.mean()), sign * share * evidence.weight);
@@ -45,7 +44,7 @@ void PlaneStatistics::accumulate(const Cell& cell, const Eigen::Vector3d& centre
   view_ += sign * cell.sums.view.cast<double>();
   cells_ += sign;
   points_ += sign * n;
-  if (cell.plane_weight > 0.0F) core_points_ += sign * n;
+  if (share > 0.0) core_points_ += sign * n;
   evidence_count_ += sign * share * static_cast<double>(cell.evidence_count);
 }
 

@@ -22,7 +22,11 @@ struct OneScan {
     NormalEstimator normals(config.normals);
     testing::commit(grid, assigner.changes());
     for (const CellChange& change : assigner.changes()) normals.refresh(grid, change.cell);
-    planes = LocalPlaneExtractor(config.grid, config.normals, config.planes).extract(grid, assigner.changes());
+    Neighbourhoods neighbourhoods;
+    neighbourhoods.gather(grid, assigner.changes());
+    LocalPlaneExtractor extractor(config.grid, config.normals, config.planes);
+    const auto found = extractor.extract(grid, assigner.changes(), neighbourhoods);
+    planes.assign(found.begin(), found.end());
     std::sort(planes.begin(), planes.end(),
               [](const LocalPlane& a, const LocalPlane& b) { return a.cells.size() > b.cells.size(); });
   }

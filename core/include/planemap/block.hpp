@@ -48,7 +48,17 @@ class Block {
   /// Ordinal of the cell at a place; -1: never observed.
   int find(int place) const {
     const std::uint16_t ordinal = ordinal_[static_cast<std::size_t>(place)];
-    return ordinal == kAbsent ? -1 : ordinal;
+    return ordinal == kAbsent ? -1 : ordinal & kOrdinal;
+  }
+  /// Which places of a row along x have cells: bit x. @param row  y + 8 z, within the block
+  std::uint8_t row(int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  /// Calls visit(ordinal) for the cell at a place, and for the second cell there. @pre there is one
+  template <class Visit>
+  void visit_place(int place, Visit&& visit) const {
+    const std::uint16_t ordinal = ordinal_[static_cast<std::size_t>(place)];
+    const auto first = static_cast<std::uint32_t>(ordinal & kOrdinal);
+    visit(first);
+    if ((ordinal & kHasSecond) != 0) visit(std::uint32_t{cells_[first].second});
   }
   /// Ordinal of the cell at a place, which is made where there was none.
   int find_or_add(int place);
@@ -57,9 +67,12 @@ class Block {
 
  private:
   static constexpr std::uint16_t kAbsent = 0xffff;
+  static constexpr std::uint16_t kHasSecond = 0x8000;  ///< spares a look at the cell
+  static constexpr std::uint16_t kOrdinal = 0x7fff;
 
   BlockIndex index_;
-  std::array<std::uint16_t, kBlockCells> ordinal_;
+  std::array<std::uint16_t, kBlockCells> ordinal_;  ///< of the cell at each place, with kHasSecond; kAbsent: none
+  std::array<std::uint8_t, kBlockEdge * kBlockEdge> rows_{};
   std::vector<std::uint16_t> places_;
   std::vector<Cell> cells_;
 };
@@ -70,8 +83,9 @@ inline int Block::find_or_add(int place) {
     ordinal = static_cast<std::uint16_t>(cells_.size());
     cells_.emplace_back();
     places_.push_back(static_cast<std::uint16_t>(place));
+    rows_[static_cast<std::size_t>(place >> kBlockBits)] |= static_cast<std::uint8_t>(1 << (place & (kBlockEdge - 1)));
   }
-  return ordinal;
+  return ordinal & kOrdinal;
 }
 
 inline int Block::find_or_add_second(int ordinal) {
@@ -80,6 +94,7 @@ inline int Block::find_or_add_second(int ordinal) {
     cells_[first].second = static_cast<std::uint16_t>(cells_.size());
     cells_.emplace_back().is_second = true;
     places_.push_back(places_[first]);
+    ordinal_[places_[first]] |= kHasSecond;
   }
   return cells_[first].second;
 }

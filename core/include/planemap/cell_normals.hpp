@@ -36,10 +36,11 @@ class NormalEstimator {
   explicit NormalEstimator(const NormalConfig& config) : config_(config) {}
 
   /// The uncertain normal of a cell; empty where its neighbourhood spans no plane or is not flat.
-  std::optional<UncertainNormal> fit(const UncertainGrid& grid, CellRef ref);
+  std::optional<UncertainNormal> fit(const UncertainGrid& grid, CellRef ref) { return fit(grid, ref, {}); }
 
   /// Fits the normal anew where the cell gained enough points since the last time.
-  void refresh(UncertainGrid& grid, CellRef ref);
+  /// @param around  the cells at most one step away, if somebody has looked already
+  void refresh(UncertainGrid& grid, CellRef ref, std::span<const CellRef> around = {});
 
  private:
   struct Fit {
@@ -52,9 +53,10 @@ class NormalEstimator {
     double expected_variance_m2;
   };
 
-  void gather(const UncertainGrid& grid, CellRef ref);
+  std::optional<UncertainNormal> fit(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around);
+  void gather(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around);
   std::optional<Fit> fit_gathered(const UncertainGrid& grid, CellRef ref) const;
-  std::optional<Fit> fit_own_surface(const UncertainGrid& grid, CellRef ref);
+  std::optional<Fit> fit_own_surface(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around);
   bool is_flat(const Fit& fit) const;
   double allowed_variance_m2(double expected_m2) const;
   double deviation_rad(const UncertainGrid& grid, CellRef ref, const Fit& fit);

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <planemap/assignment.hpp>
 #include <planemap/config.hpp>
+#include <planemap/neighbourhoods.hpp>
 #include <planemap/plane_statistics.hpp>
 #include <planemap/uncertain_grid.hpp>
 #include <span>
@@ -22,29 +25,54 @@ class LocalPlaneExtractor {
  public:
   LocalPlaneExtractor(const GridConfig& grid, const NormalConfig& normals, const PlaneConfig& planes);
 
-  /// The local planes of the cells that the scan touched. @pre the cells' `working` is their place in `changes`
-  std::vector<LocalPlane> extract(const UncertainGrid& grid, std::span<const CellChange> changes);
+  /// The local planes of the cells that the scan touched; valid until the next call.
+  /// @pre the cells' `working` is their place in `changes`
+  std::span<const LocalPlane> extract(const UncertainGrid& grid, std::span<const CellChange> changes,
+                                      const Neighbourhoods& neighbourhoods);
 
  private:
+  /// What growing asks of a changed cell, side by side for all of them.
+  struct Candidate {
+    Eigen::Vector3d normal;
+    Eigen::Vector3d middle_m;
+    double deviation_rad;
+    std::uint32_t first_neighbour;  ///< in neighbours_
+    std::uint32_t last_neighbour;
+    std::uint32_t visitor;  ///< who looked at it last; kTaken: it is in a plane, or can't be in one
+  };
+
   bool eligible(const Cell& cell) const;
-  std::vector<std::uint32_t> seeds(const UncertainGrid& grid, std::span<const CellChange> changes) const;
-  LocalPlane start(const UncertainGrid& grid, CellRef first);
-  static void take(const UncertainGrid& grid, CellRef ref, LocalPlane& plane);
+  void list_candidates(const UncertainGrid& grid, std::span<const CellChange> changes,
+                       const Neighbourhoods& neighbourhoods);
+  void sort_seeds();
+  void grow_all(const UncertainGrid& grid, std::span<const CellChange> changes, bool strict);
+  std::size_t start(const UncertainGrid& grid, CellRef first, std::uint32_t change);
   /// Takes in what is similar and reached from the plane's cells.
   /// @param from    first of its cells that has not been looked around
-  /// @param number  of the plane, which then leaves out what lies aside of it and notes that; nullptr: takes that, too
-  void grow(const UncertainGrid& grid, LocalPlane& plane, std::size_t from, const std::size_t* number);
-  void release_small(const UncertainGrid& grid, LocalPlane& plane);
-  void take_aside(const UncertainGrid& grid, CellRef ref, LocalPlane& plane);
-  bool similar(const UncertainGrid& grid, CellRef ref, const PlaneFit& plane) const;
+  /// @param strict  leaves out what lies aside of the plane, and notes that; else it takes that, too
+  void grow(const UncertainGrid& grid, std::span<const CellChange> changes, std::size_t number, std::size_t from,
+            bool strict);
+  void take(const UncertainGrid& grid, CellRef ref, std::uint32_t change, std::size_t number);
+  void release_small(std::size_t number);
+  void take_aside(const UncertainGrid& grid, std::span<const CellChange> changes, std::uint32_t change,
+                  std::size_t number);
+  bool similar(const Candidate& cell, const PlaneFit& plane) const;
+  void leave_out_those_without_fit();
 
   GridConfig grid_config_;
   NormalConfig normal_config_;
   PlaneConfig config_;
   double squared_chord_;
-  std::vector<std::uint32_t> visited_;                  ///< per changed cell: who looked at it last
-  std::vector<std::pair<std::size_t, CellRef>> aside_;  ///< number of a plane, and a cell that lies aside of it
-  std::uint32_t visitor_ = 0;  ///< number of the plane that is growing, from 1; kTaken: in a plane
+
+  // Of the scan at hand; kept to spare allocations.
+  std::vector<Candidate> candidates_;      ///< by change
+  std::vector<std::uint32_t> neighbours_;  ///< changes that can be in planes, of one candidate after another
+  std::vector<std::uint32_t> seeds_;       ///< Fig. 3, line 4: the dense cells, by change
+  std::vector<LocalPlane> planes_;         ///< the first plane_count_ of them
+  std::vector<std::vector<std::uint32_t>> members_;           ///< beside planes_: their cells by change
+  std::vector<std::pair<std::size_t, std::uint32_t>> aside_;  ///< number of a plane, and a change that lies aside of it
+  std::size_t plane_count_ = 0;
+  std::uint32_t visitor_ = 0;  ///< number of the plane that is growing, from 1
   static constexpr std::uint32_t kTaken = 0xffffffff;
 };
 

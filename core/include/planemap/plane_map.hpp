@@ -5,6 +5,7 @@
 #include <memory>
 #include <planemap/config.hpp>
 #include <planemap/local_planes.hpp>
+#include <planemap/neighbourhoods.hpp>
 #include <planemap/plane.hpp>
 #include <planemap/plane_statistics.hpp>
 #include <planemap/pose_evidence.hpp>
@@ -60,7 +61,7 @@ class PlaneMap {
 
   /// Merges the local planes of a scan into the global ones: absorbed, merge, or new.
   GlobalReport merge(UncertainGrid& grid, std::span<const LocalPlane> local, std::span<const CellChange> changes,
-                     const ScanPose& scan);
+                     const Neighbourhoods& neighbourhoods, const ScanPose& scan);
 
   /// Takes the points of cells away, and with them all that their planes had from them. A plane that was worn down to
   /// less than what starts one is gone.
@@ -112,15 +113,19 @@ class PlaneMap {
 
   bool agree(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b, const PlaneFit& fit_b,
              double max_angle_rad, double max_offset_m) const;
-  void merge_local(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
-  std::vector<PlaneSlot> touching(const UncertainGrid& grid, const std::vector<CellRef>& cells) const;
-  PlaneSlot absorb_into(UncertainGrid& grid, const LocalPlane& local, GlobalReport& report);
+  void merge_local(UncertainGrid& grid, const LocalPlane& local, const Neighbourhoods& neighbourhoods,
+                   std::int64_t utime, GlobalReport& report);
+  void begin_touching();
+  void note_touching(const UncertainGrid& grid, std::span<const CellRef> cells);
+  PlaneSlot absorb_into(UncertainGrid& grid, const LocalPlane& local, const Neighbourhoods& neighbourhoods,
+                        GlobalReport& report);
   bool is_pure(const PlaneStatistics& statistics, const PlaneFit& fit) const;
   bool are_creased(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b,
                    const PlaneFit& fit_b) const;
   bool is_nearer(const UncertainGrid& grid, CellRef ref, const PlaneFit& a, const PlaneFit& b) const;
   /// The cells of a local plane that no plane has, or one that the local plane makes a crease with and is nearer than.
-  std::vector<CellRef> free_cells(const UncertainGrid& grid, const LocalPlane& local) const;
+  /// @return valid until the next call
+  std::span<const CellRef> free_cells(const UncertainGrid& grid, const LocalPlane& local);
   void start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report);
   void settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report);
   /// @return the plane that holds what slot held
@@ -129,10 +134,10 @@ class PlaneMap {
   void open_seconds(UncertainGrid& grid, std::span<const CellChange> changes);
   PlaneSlot plane_through(const UncertainGrid& grid, CellRef ref) const;
   bool is_sibling(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
-  void adopt(UncertainGrid& grid, std::span<const CellChange> changes);
-  PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref) const;
+  void adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods);
+  PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const;
   void bridge(UncertainGrid& grid, GlobalReport& report);
-  PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot) const;
+  PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot);
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
   void dissolve(UncertainGrid& grid, PlaneSlot slot);
   bool is_worn_out(PlaneSlot slot) const;
@@ -154,6 +159,17 @@ class PlaneMap {
   std::vector<PlaneSlot> dirty_;                ///< since the last update_records()
   std::vector<RemovedPlane> removed_;           ///< since the last update_records()
   CoarseIndex coarse_;
+
+  // What steps of a scan need for themselves; kept to spare allocations.
+  std::vector<PlaneSlot> touching_;      ///< each slot once
+  std::vector<std::uint32_t> noted_in_;  ///< by slot: number of the search that noted it last
+  std::uint32_t search_ = 0;
+  std::vector<PlaneSlot> candidates_;
+  std::vector<CellRef> free_;
+  std::vector<CellRef> around_;
+  std::vector<CellRef> unlabelled_;
+  std::vector<std::uint64_t> cubes_;
+  std::vector<PlaneSlot> near_;
 };
 
 }  // namespace planemap

@@ -38,8 +38,14 @@ class PlaneStatistics {
 
   /// Takes a cell in, with cell.plane_weight as the share of its evidence, or out: then exactly as it was taken in.
   /// @param centre_m  the cell's geometric centre
-  void add(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, 1.0); }
-  void remove(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, -1.0); }
+  void add(const Cell& cell, const Eigen::Vector3d& centre_m) {
+    accumulate(cell, centre_m, 1.0, static_cast<double>(cell.plane_weight));
+  }
+  void remove(const Cell& cell, const Eigen::Vector3d& centre_m) {
+    accumulate(cell, centre_m, -1.0, static_cast<double>(cell.plane_weight));
+  }
+  /// Takes a cell in with all of its evidence.
+  void add_whole(const Cell& cell, const Eigen::Vector3d& centre_m) { accumulate(cell, centre_m, 1.0, 1.0); }
   /// Takes in all that another set holds.
   void add(const PlaneStatistics& other);
 
@@ -65,7 +71,7 @@ class PlaneStatistics {
   }
 
  private:
-  void accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign);
+  void accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign, double share);
   std::optional<PlaneFit> fit_pooled() const;
   std::optional<PlaneFit> fit_normals() const;
   double normal_deviation_rad() const;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -104,30 +106,35 @@ class UncertainGrid {
 
 template <class Visit>
 void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) const {
-  const Block& home = *blocks_[ref.block];
-  const CellIndex index = home.cell_index(ref.ordinal);
+  constexpr int kMask = kBlockEdge - 1;
+  const int place = blocks_[ref.block]->place(ref.ordinal);
   const auto& around = neighbours_[ref.block];
+  const int x = place & kMask;
+  const int y = place >> kBlockBits & kMask;
+  const int z = place >> (2 * kBlockBits);
+  // Row by row along x: the part of a row that lies in one block is a few bits of a byte.
   for (int dz = -depth; dz <= depth; ++dz) {
     for (int dy = -depth; dy <= depth; ++dy) {
-      for (int dx = -depth; dx <= depth; ++dx) {
-        const CellIndex there = index + CellIndex(dx, dy, dz);
-        const BlockIndex step = block_of(there) - home.index();
-        const int towards = step.x() + 1 + 3 * (step.y() + 1) + 9 * (step.z() + 1);
-        const std::uint32_t slot = around[static_cast<std::size_t>(towards)];
+      const int there = ((y + dy) & kMask) + (((z + dz) & kMask) << kBlockBits);
+      const int beside = 3 * (((y + dy) >> kBlockBits) + 1) + 9 * (((z + dz) >> kBlockBits) + 1);
+      for (int dx = -depth; dx <= depth;) {
+        const int first = x + dx;
+        const int last = std::min(x + depth, first | kMask);  // in the same block
+        const std::uint32_t slot = around[static_cast<std::size_t>((first >> kBlockBits) + 1 + beside)];
+        dx = last + 1 - x;
         if (slot == kNoBlock) continue;
-        const int ordinal = blocks_[slot]->find(place_of(there));
-        if (ordinal < 0) continue;
-        const CellRef found{slot, static_cast<std::uint32_t>(ordinal)};
-        const auto tell = [&](CellRef at) {
-          if constexpr (std::is_invocable_v<Visit, CellRef, CellIndex>) {
-            visit(at, CellIndex(dx, dy, dz));
-          } else {
-            visit(at);
-          }
-        };
-        const std::uint16_t second = blocks_[slot]->cell(found.ordinal).second;
-        tell(found);
-        if (second != Cell::kNoSecond) tell({slot, second});
+        const Block& block = *blocks_[slot];
+        unsigned bits = block.row(there) & (0xffU >> (kMask - (last & kMask))) & (0xffU << (first & kMask));
+        for (; bits != 0; bits &= bits - 1) {
+          const int at = std::countr_zero(bits);
+          block.visit_place(at + (there << kBlockBits), [&](std::uint32_t ordinal) {
+            if constexpr (std::is_invocable_v<Visit, CellRef, CellIndex>) {
+              visit(CellRef{slot, ordinal}, CellIndex((first & ~kMask) + at - x, dy, dz));
+            } else {
+              visit(CellRef{slot, ordinal});
+            }
+          });
+        }
       }
     }
   }
