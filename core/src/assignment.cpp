@@ -146,9 +146,7 @@ void Assigner::Pass::assign_chunk(UncertainGrid& grid) {
     near_.find_candidates(grid, {chunk_.cell[0][at], chunk_.cell[1][at], chunk_.cell[2][at]}, run);
   }
   kernels_.assign(chunk_, runs_.data(), count, near_.candidates());
-  for (std::size_t i = 0; i < count; ++i) {
-    if (runs_[i].divider_count > 0) kernels_.divide(chunk_, runs_[i], near_.dividers());
-  }
+  if (near_.has_dividers()) kernels_.divide(chunk_, near_.accumulators(), near_.dividers());
   kernels_.accumulate(chunk_, near_.accumulators());
 }
 

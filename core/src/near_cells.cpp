@@ -11,7 +11,6 @@ namespace planemap {
 void NearCells::begin(const CellIndex& base, const Eigen::Isometry3d& T_world_sensor, const DividingPlanes& planes) {
   frame_ = {base, T_world_sensor, config_.cell_size_m, planes.pose_variance_m2};
   planes_ = planes;
-  place_dividers_.clear();
   dividers_.clear();
   table_.clear();
   cells_.clear();
@@ -24,8 +23,6 @@ void NearCells::find_candidates(UncertainGrid& grid, const CellIndex& cell, simd
   if (cells_[number].candidate_count == 0) list_candidates(grid, number, cell);
   run.first_candidate = cells_[number].first_candidate;
   run.candidate_count = cells_[number].candidate_count;
-  run.first_divider = cells_[number].first_divider;
-  run.divider_count = cells_[number].divider_count;
   std::copy_n(accumulators_[number].centre_cells, 3, run.centre_cells);
 }
 
@@ -45,9 +42,9 @@ void NearCells::add_second(const UncertainGrid& grid, std::uint32_t number, Cell
   const Plane* second_plane = planes_.of(grid.cell(second).plane);
   cells_[number].second = other;
   if (first_plane == nullptr && second_plane == nullptr) return;  // Eq. 7 alone tells them apart
-  cells_[number].own_divider = cells_[other].own_divider = static_cast<std::uint32_t>(place_dividers_.size());
-  place_dividers_.push_back({{static_cast<std::int32_t>(number), static_cast<std::int32_t>(other)},
-                             {scan_plane(first_plane, frame_), scan_plane(second_plane, frame_)}});
+  accumulators_[number].divider = accumulators_[other].divider = static_cast<std::int32_t>(dividers_.size());
+  dividers_.push_back({{static_cast<std::int32_t>(number), static_cast<std::int32_t>(other)},
+                       {scan_plane(first_plane, frame_), scan_plane(second_plane, frame_)}});
 }
 
 std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
@@ -56,6 +53,7 @@ std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellI
   if (accumulators_.size() < cells_.size()) accumulators_.resize(2 * cells_.size());
   simd::Accumulator& accumulator = accumulators_[number];
   accumulator.count = 0;
+  accumulator.divider = simd::kNoDivider;
   for (int w = 0; w < 3; ++w) accumulator.centre_cells[w] = static_cast<float>(cell(w)) + 0.5F;
   near.ref = ref;
   const CellSums& sums = grid.cell(ref).sums;
@@ -70,18 +68,6 @@ std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellI
   return number;
 }
 
-void NearCells::list_dividers(NearCell& near) {
-  near.first_divider = static_cast<std::uint32_t>(dividers_.size());
-  for (const Rival& rival : rivals_) {
-    const std::uint32_t number = cells_[rival.target].own_divider;
-    if (number == kNone) continue;
-    const simd::Divider& divider = place_dividers_[number];
-    const auto is_same = [&](const simd::Divider& other) { return other.target[0] == divider.target[0]; };
-    if (std::none_of(dividers_.begin() + near.first_divider, dividers_.end(), is_same)) dividers_.push_back(divider);
-  }
-  near.divider_count = static_cast<std::uint32_t>(dividers_.size()) - near.first_divider;
-}
-
 void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
   rivals_.clear();
   const std::uint32_t second = cells_[number].second;
@@ -93,7 +79,6 @@ void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const
   }
   cells_[number].first_candidate = static_cast<std::uint32_t>(candidates_.size());
   cells_[number].candidate_count = static_cast<std::uint32_t>(rivals_.size());
-  list_dividers(cells_[number]);
   for (const Rival& rival : rivals_) {
     const Eigen::Vector3f slope = (-2.0 * rival.place_cells).cast<float>();
     candidates_.push_back({{slope.x(), slope.y(), slope.z()},

@@ -29,6 +29,7 @@ class NearCells {
   void find_candidates(UncertainGrid& grid, const CellIndex& cell, simd::Run& run);
 
   const simd::Candidate* candidates() const { return candidates_.data(); }
+  bool has_dividers() const { return !dividers_.empty(); }
   const simd::Divider* dividers() const { return dividers_.data(); }
   /// By target, as the candidates name them.
   simd::Accumulator* accumulators() { return accumulators_.data(); }
@@ -45,10 +46,7 @@ class NearCells {
     bool has_points = false;
     std::uint32_t first_candidate = 0;
     std::uint32_t candidate_count = 0;  ///< 0: not listed yet
-    std::uint32_t first_divider = 0;    ///< of the places that the candidates share with others
-    std::uint32_t divider_count = 0;
     std::uint32_t second = kNone;       ///< number of the other cell at its place
-    std::uint32_t own_divider = kNone;  ///< of its place, in place_dividers_; kNone: not divided, or Eq. 7 does it
   };
   /// A candidate for the cell at hand.
   struct Rival {
@@ -62,7 +60,6 @@ class NearCells {
   std::uint32_t number_of(const UncertainGrid& grid, CellRef ref, const CellIndex& cell);
   std::uint32_t add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell);
   void add_second(const UncertainGrid& grid, std::uint32_t number, CellRef second, const CellIndex& cell);
-  void list_dividers(NearCell& near);
   void list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell);
   void gather(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell);
   void open_second(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell, const Eigen::Vector3f& view);
@@ -75,8 +72,7 @@ class NearCells {
   std::vector<NearCell> cells_;
   std::vector<simd::Accumulator> accumulators_;  ///< beside cells_
   std::vector<simd::Candidate> candidates_;
-  std::vector<simd::Divider> place_dividers_;
-  std::vector<simd::Divider> dividers_;  ///< of the cells one after another, as their candidates
+  std::vector<simd::Divider> dividers_;  ///< as the accumulators name them
   std::vector<Rival> rivals_;
 };
 

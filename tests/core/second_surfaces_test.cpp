@@ -115,9 +115,9 @@ TEST(Divide, AgreesWithItsSlowTwinOnEveryInstructionSet) {
       seen.insert(expected.target[at]);
     }
     EXPECT_EQ(seen, (std::set<std::int32_t>{0, 1, 3, 4, 5}));  // nothing is on the averted one
-    simd::Run run{0, 203};
-    run.divider_count = 3;
-    simd::kernels(set).divide(chunk, run, dividers.data());
+    std::vector<simd::Accumulator> accumulators(6);
+    for (std::size_t i = 0; i < accumulators.size(); ++i) accumulators[i].divider = static_cast<std::int32_t>(i / 2);
+    simd::kernels(set).divide(chunk, accumulators.data(), dividers.data());
     for (std::size_t at = simd::PointChunk::kPad; at < simd::PointChunk::kPad + chunk.size; ++at) {
       EXPECT_EQ(chunk.target[at], expected.target[at]) << at;
     }

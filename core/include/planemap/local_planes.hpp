@@ -65,11 +65,11 @@ class LocalPlaneExtractor {
   double squared_chord_;
 
   // Of the scan at hand; kept to spare allocations.
-  std::vector<Candidate> candidates_;      ///< by change
-  std::vector<std::uint32_t> neighbours_;  ///< changes that can be in planes, of one candidate after another
-  std::vector<std::uint32_t> seeds_;       ///< Fig. 3, line 4: the dense cells, by change
-  std::vector<LocalPlane> planes_;         ///< the first plane_count_ of them
-  std::vector<std::vector<std::uint32_t>> members_;           ///< beside planes_: their cells by change
+  std::vector<Candidate> candidates_;                ///< by change
+  std::vector<std::uint32_t> neighbours_;            ///< changes that can be in planes, of one candidate after another
+  std::vector<std::uint32_t> seeds_;                 ///< Fig. 3, line 4: the dense cells, by change
+  std::vector<LocalPlane> planes_;                   ///< the first plane_count_ of them
+  std::vector<std::vector<std::uint32_t>> members_;  ///< beside planes_: their cells by change
   std::vector<std::pair<std::size_t, std::uint32_t>> aside_;  ///< number of a plane, and a change that lies aside of it
   std::size_t plane_count_ = 0;
   std::uint32_t visitor_ = 0;  ///< number of the plane that is growing, from 1

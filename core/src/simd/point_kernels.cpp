@@ -251,20 +251,35 @@ HWY_INLINE void compare(const ScanPlane& plane, const PointChunk& chunk, std::si
   distance2 = hn::Mul(distance, distance);
 }
 
-void divide(PointChunk& chunk, const Run& run, const Divider* dividers) {
+/// Finds where in the chunk other targets begin. @param begins  as find_runs()
+HWY_INLINE std::size_t find_target_runs(const PointChunk& chunk, std::uint32_t* begins) {
   const std::size_t lanes = hn::Lanes(kFloat);
-  const Divider* end = dividers + run.first_divider + run.divider_count;
-  for (const Divider* divider = dividers + run.first_divider; divider != end; ++divider) {
-    const auto first = hn::Set(kInt, divider->target[0]);
-    const auto second = hn::Set(kInt, divider->target[1]);
-    // The last vector may reach into the next run: what a divider does to a point does not depend on the run.
-    for (std::size_t at = PointChunk::kPad + run.begin; at < PointChunk::kPad + run.end; at += lanes) {
+  std::size_t count = 0;
+  if (chunk.size > 0) begins[count++] = 0;
+  for (std::size_t at = 0; at < chunk.size; at += lanes) {
+    count = append(changes(chunk.target + PointChunk::kPad + at), at, chunk.size, begins, count);
+  }
+  begins[count] = static_cast<std::uint32_t>(chunk.size);
+  return count;
+}
+
+void divide(PointChunk& chunk, const Accumulator* accumulators, const Divider* dividers) {
+  const std::size_t lanes = hn::Lanes(kFloat);
+  std::uint32_t begins[kChunkPoints + 1];
+  const std::size_t count = find_target_runs(chunk, begins);
+  for (std::size_t i = 0; i < count; ++i) {
+    // A vector before may have reached into this run: what it made of a point is what this one makes of it.
+    const std::int32_t winner = chunk.target[PointChunk::kPad + begins[i]];
+    if (winner == kNoTarget || accumulators[winner].divider == kNoDivider) continue;
+    const Divider& divider = dividers[accumulators[winner].divider];
+    const auto first = hn::Set(kInt, divider.target[0]);
+    const auto second = hn::Set(kInt, divider.target[1]);
+    for (std::size_t at = PointChunk::kPad + begins[i]; at < PointChunk::kPad + begins[i + 1]; at += lanes) {
       const auto target = hn::LoadU(kInt, chunk.target + at);
       const auto mine = hn::Or(hn::Eq(target, first), hn::Eq(target, second));
-      if (hn::AllFalse(kInt, mine)) continue;
       Floats distance2[2];
       Floats allowed[2];
-      for (int i = 0; i < 2; ++i) compare(divider->plane[i], chunk, at, distance2[i], allowed[i]);
+      for (int side = 0; side < 2; ++side) compare(divider.plane[side], chunk, at, distance2[side], allowed[side]);
       const Mask on_second = hn::Lt(hn::Mul(distance2[1], allowed[0]), hn::Mul(distance2[0], allowed[1]));
       const auto owner = hn::IfThenElse(hn::RebindMask(kInt, on_second), second, first);
       hn::StoreU(hn::IfThenElse(mine, owner, target), kInt, chunk.target + at);
@@ -352,12 +367,7 @@ HWY_INLINE void flush(const Sums& s, std::size_t n, Accumulator& accumulator) {
 void accumulate(const PointChunk& chunk, Accumulator* accumulators) {
   const std::size_t lanes = hn::Lanes(kFloat);
   std::uint32_t begins[kChunkPoints + 1];
-  std::size_t count = 0;
-  if (chunk.size > 0) begins[count++] = 0;
-  for (std::size_t at = 0; at < chunk.size; at += lanes) {
-    count = append(changes(chunk.target + PointChunk::kPad + at), at, chunk.size, begins, count);
-  }
-  begins[count] = static_cast<std::uint32_t>(chunk.size);
+  const std::size_t count = find_target_runs(chunk, begins);
   for (std::size_t i = 0; i < count; ++i) {
     std::size_t at = PointChunk::kPad + begins[i];
     const std::size_t end = PointChunk::kPad + begins[i + 1];

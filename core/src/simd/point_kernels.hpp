@@ -64,6 +64,7 @@ struct PointChunk {
 };
 
 constexpr std::int32_t kNoTarget = -1;
+constexpr std::int32_t kNoDivider = -1;
 
 /// A virtual centre that may win points. For a point q its expected squared distance (Eq. 7), but for terms that all
 /// candidates share, is bias + slope . q; q from the centre of the cell that the points lie in, all in cells.
@@ -94,16 +95,15 @@ struct Run {
   std::uint32_t end = 0;
   std::uint32_t first_candidate = 0;
   std::uint32_t candidate_count = 0;  ///< 0: the points lie in no cell
-  std::uint32_t first_divider = 0;    ///< of those whose cells are among the candidates
-  std::uint32_t divider_count = 0;
-  float centre_cells[3] = {};  ///< of the cell, as PointChunk::place_cells
+  float centre_cells[3] = {};         ///< of the cell, as PointChunk::place_cells
 };
 
 /// Sums over the points that a cell takes, a partial one in each lane: q (3), q q^T (xx xy xz yy yz zz) with q from the
 /// cell's centre, in cells; the variances along the sensor's axes (3), square metres.
 struct Accumulator {
-  float centre_cells[3] = {};  ///< of the cell, as PointChunk::place_cells
-  std::uint32_t count = 0;     ///< points; while it is 0 the lanes are undefined
+  float centre_cells[3] = {};         ///< of the cell, as PointChunk::place_cells
+  std::uint32_t count = 0;            ///< points; while it is 0 the lanes are undefined
+  std::int32_t divider = kNoDivider;  ///< by which its points are told from those of the other cell at its place
   alignas(32) float lanes[kSumCount][kMaxLanes];
 };
 
@@ -118,7 +118,7 @@ struct Kernels {
   /// Finds for each point the candidate with the smallest expected squared distance. The runs cover the chunk.
   void (*assign)(PointChunk& chunk, const Run* runs, std::size_t run_count, const Candidate* candidates);
   /// Gives the points that went to either cell of a divider to the one whose plane they are nearer to.
-  void (*divide)(PointChunk& chunk, const Run& run, const Divider* dividers);
+  void (*divide)(PointChunk& chunk, const Accumulator* accumulators, const Divider* dividers);
   /// Adds the points to those that take them.
   void (*accumulate)(const PointChunk& chunk, Accumulator* accumulators);
   /// Adds up the lanes.
