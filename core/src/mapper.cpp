@@ -5,6 +5,7 @@
 #include "planemap/local_planes.hpp"
 #include "planemap/neighbourhoods.hpp"
 #include "planemap/plane_map.hpp"
+#include "planemap/pool.hpp"
 #include "planemap/uncertain_grid.hpp"
 #include "planemap/wear.hpp"
 
@@ -74,7 +75,8 @@ class Mapper::Impl {
     const StageScope scope(observer, Stage::kSnapshot);
     planes_.update_records(revision_, records_, removed_);
     trim_removals();
-    MapSnapshot::Parts parts;
+    const std::shared_ptr<MapSnapshot> snapshot = snapshots_.take();
+    MapSnapshot::Parts& parts = snapshot->parts();
     parts.epoch = epoch_;
     parts.revision = revision_;
     parts.utime = utime_;
@@ -84,8 +86,8 @@ class Mapper::Impl {
     parts.removed_complete_since = removed_complete_since_;
     parts.planes = records_;
     parts.removed = removed_;
-    parts.blocks = grid_.share();
-    return std::make_shared<const MapSnapshot>(std::move(parts));
+    grid_.share(parts.blocks);
+    return snapshot;
   }
 
  private:
@@ -172,6 +174,7 @@ class Mapper::Impl {
   Wear wear_;
   std::vector<std::shared_ptr<const PlaneRecord>> records_;
   std::vector<RemovedPlane> removed_;
+  Pool<MapSnapshot> snapshots_;
   std::uint64_t removed_complete_since_ = 0;
 };
 

@@ -22,7 +22,7 @@ std::vector<PlaneSlot> planes_of(const Block& block) {
 
 }  // namespace
 
-PlaneBlocks::PlaneBlocks(std::span<const std::shared_ptr<const Block>> blocks, const PlaneBlocks* previous) {
+PlaneBlocks::PlaneBlocks(const BlockTable& blocks, const PlaneBlocks* previous) {
   blocks_.reserve(blocks.size());
   begins_.reserve(blocks.size() + 1);
   begins_.push_back(0);

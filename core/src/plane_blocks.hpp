@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <planemap/block_table.hpp>
 #include <planemap/cell.hpp>
 #include <span>
 #include <vector>
@@ -18,7 +18,7 @@ class PlaneBlocks {
   /// @param blocks    of a snapshot
   /// @param previous  of an earlier snapshot that is still held, or nullptr: blocks that are still the same object are
   ///                  not looked at again
-  explicit PlaneBlocks(std::span<const std::shared_ptr<const Block>> blocks, const PlaneBlocks* previous = nullptr);
+  explicit PlaneBlocks(const BlockTable& blocks, const PlaneBlocks* previous = nullptr);
 
   /// The planes with cells in a block, ascending; cells of no plane are not counted.
   std::span<const PlaneSlot> planes_in(std::size_t block) const {

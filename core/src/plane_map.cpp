@@ -232,7 +232,7 @@ GlobalReport PlaneMap::merge(UncertainGrid& grid, std::span<const LocalPlane> lo
   }
   born_.clear();
   if (grid_config_.second_surfaces) open_seconds(grid, changes);
-  if (config_.bridge_gap_m > 0.0) bridge(grid, report);
+  if (config_.bridge_gap_m > 0.0) bridge(grid, changes, report);
   dissolve_small(grid, report);
   for (const PlaneSlot slot : touched_) {
     if (!states_[slot]) continue;
@@ -335,13 +335,15 @@ void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report)
   }
 }
 
-PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) {
+/// A piece across a gap from where the scan looks: the work does not grow with the plane, and the plane grows nowhere
+/// else.
+PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, std::span<const CellChange> changes, PlaneSlot slot) {
   const State& plane = state(slot);
   cubes_.clear();
   near_.clear();
-  for (const CellRef ref : plane.cells) {
-    if (grid.cell(ref).plane != slot) continue;
-    const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
+  for (const CellChange& change : changes) {
+    if (grid.cell(change.cell).plane != slot) continue;
+    const Eigen::Vector3d centre_m = grid.geometric_centre_m(change.cell);
     const std::uint64_t key = coarse_.key_of(centre_m);
     if (!cubes_.empty() && cubes_.back() == key) continue;
     if (std::find(cubes_.begin(), cubes_.end(), key) != cubes_.end()) continue;
@@ -363,7 +365,7 @@ PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, PlaneSlot slot) {
   return kNoSlot;
 }
 
-void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
+void PlaneMap::bridge(UncertainGrid& grid, std::span<const CellChange> changes, GlobalReport& report) {
   candidates_ = touched_;
   for (PlaneSlot slot : candidates_) {
     while (states_[slot]) {
@@ -371,7 +373,7 @@ void PlaneMap::bridge(UncertainGrid& grid, GlobalReport& report) {
       const std::size_t cells = plane.statistics.cell_count();
       const bool grown = static_cast<double>(cells) >= 1.1 * static_cast<double>(plane.cells_when_bridged);
       if (!grown && ++plane.scans_since_bridged < kBridgingScans) break;
-      const PlaneSlot partner = bridge_partner(grid, slot);
+      const PlaneSlot partner = bridge_partner(grid, changes, slot);
       if (partner == kNoSlot) {
         plane.cells_when_bridged = cells;
         plane.scans_since_bridged = 0;
@@ -403,9 +405,8 @@ void PlaneMap::dissolve(UncertainGrid& grid, PlaneSlot slot) {
 
 // Records for readers.
 
-PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
+void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) const {
   const State& plane = state(slot);
-  PlaneRecord record;
   record.id = id_of(slot);
   record.plane = plane.fit.plane;
   // The weight that the fit was made from: a plane whose core cells have all left stands as it was last fitted.
@@ -422,7 +423,6 @@ PlaneRecord PlaneMap::record_of(PlaneSlot slot, std::uint64_t revision) const {
   record.quality = plane.statistics.core_point_count() / std::max(plane.statistics.point_count(), 1.0);
   record.revision = revision;
   record.merged = plane.merged;
-  return record;
 }
 
 bool PlaneMap::update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
@@ -440,12 +440,13 @@ bool PlaneMap::update_records(std::uint64_t revision, std::vector<std::shared_pt
   for (const PlaneSlot slot : dirty_) {
     if (!states_[slot]) continue;
     state(slot).dirty = false;
-    auto record = std::make_shared<const PlaneRecord>(record_of(slot, revision));
+    const std::shared_ptr<PlaneRecord> record = record_pool_.take();
+    write_record(slot, revision, *record);
     const auto at = std::lower_bound(records.begin(), records.end(), record->id, id_less);
     if (at != records.end() && (*at)->id == record->id) {
-      *at = std::move(record);
+      *at = record;
     } else {
-      records.insert(at, std::move(record));
+      records.insert(at, record);
     }
   }
   dirty_.clear();

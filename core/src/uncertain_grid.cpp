@@ -2,8 +2,16 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace planemap {
+
+namespace {
+
+/// Blocks have room for a multiple of so many cells, and for one more than they hold.
+constexpr std::size_t kRoomStep = 8;
+
+}  // namespace
 
 UncertainGrid::UncertainGrid(double cell_size_m) : cell_size_m_(cell_size_m), inverse_cell_size_(1.0 / cell_size_m) {
   if (!std::isfinite(cell_size_m) || cell_size_m <= 0.0) {
@@ -32,18 +40,17 @@ std::optional<CellRef> UncertainGrid::find(const CellIndex& index) const {
 CellRef UncertainGrid::find_or_add(const CellIndex& index) {
   std::uint32_t slot = block_slot(block_of(index));
   if (slot == kNoBlock) slot = make_block(block_of(index));
-  Block& block = writable_block(slot);
-  const std::size_t before = block.size();
-  const int ordinal = block.find_or_add(place_of(index));
-  cell_count_ += block.size() - before;
-  return {slot, static_cast<std::uint32_t>(ordinal)};
+  if (const int known = blocks_[slot]->find(place_of(index)); known >= 0) {
+    return {slot, static_cast<std::uint32_t>(known)};
+  }
+  ++cell_count_;
+  return {slot, static_cast<std::uint32_t>(growing_block(slot).find_or_add(place_of(index)))};
 }
 
 CellRef UncertainGrid::find_or_add_second(CellRef ref) {
-  Block& block = writable_block(ref.block);
-  const std::size_t before = block.size();
-  const int ordinal = block.find_or_add_second(static_cast<int>(ref.ordinal));
-  cell_count_ += block.size() - before;
+  if (const std::uint16_t known = cell(ref).second; known != Cell::kNoSecond) return {ref.block, known};
+  ++cell_count_;
+  const int ordinal = growing_block(ref.block).find_or_add_second(static_cast<int>(ref.ordinal));
   return {ref.block, static_cast<std::uint32_t>(ordinal)};
 }
 
@@ -69,9 +76,11 @@ std::uint32_t UncertainGrid::block_slot(const BlockIndex& index) const {
 std::uint32_t UncertainGrid::make_block(const BlockIndex& index) {
   const auto slot = static_cast<std::uint32_t>(blocks_.size());
   slots_.emplace(index, slot);
-  owned_.push_back(std::make_shared<Block>(index));
-  blocks_.push_back(owned_.back());
-  shared_.push_back(false);
+  std::shared_ptr<Block> block = take_block(0);
+  block->restart(index);
+  blocks_.push_back(block.get());
+  table_.push_back(std::move(block));
+  written_since_.push_back(shares_);
   neighbours_.emplace_back().fill(kNoBlock);
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -87,18 +96,34 @@ std::uint32_t UncertainGrid::make_block(const BlockIndex& index) {
   return slot;
 }
 
-Block& UncertainGrid::writable_block(std::uint32_t slot) {
-  if (shared_[slot]) {
-    owned_[slot] = std::make_shared<Block>(*owned_[slot]);
-    blocks_[slot] = owned_[slot];
-    shared_[slot] = false;
-  }
-  return *owned_[slot];
+Block& UncertainGrid::growing_block(std::uint32_t slot) {
+  const std::size_t size = blocks_[slot]->size();
+  if (written_since_[slot] != shares_ || size == blocks_[slot]->capacity()) make_own(slot, size + 1);
+  return *blocks_[slot];
 }
 
-const std::vector<std::shared_ptr<const Block>>& UncertainGrid::share() {
-  shared_.assign(shared_.size(), true);
-  return blocks_;
+/// Replaces a block by a copy that no snapshot has.
+void UncertainGrid::make_own(std::uint32_t slot, std::size_t cells) {
+  std::shared_ptr<Block> copy = take_block(cells);
+  *copy = *blocks_[slot];
+  blocks_[slot] = copy.get();
+  table_.set(slot, std::move(copy));
+  written_since_[slot] = shares_;
+}
+
+std::shared_ptr<Block> UncertainGrid::take_block(std::size_t cells) {
+  const std::size_t room = cells / kRoomStep + 1;
+  if (pools_.size() <= room) pools_.resize(room + 1);
+  return pools_[room].take([&] {
+    auto block = std::make_unique<Block>();
+    block->reserve(room * kRoomStep);
+    return block;
+  });
+}
+
+void UncertainGrid::share(BlockTable& table) {
+  table_.share(table);
+  ++shares_;
 }
 
 }  // namespace planemap

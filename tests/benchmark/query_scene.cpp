@@ -121,13 +121,19 @@ QueryScene::QueryScene(std::size_t planes)
     const Vector3d place(static_cast<double>(i % rooms_in_row_), static_cast<double>(i / rooms_in_row_), 0.0);
     add_room(builder, place.cwiseProduct(kPitchM), random);
   }
-  parts_ = builder.parts();
-  snapshot_ = std::make_shared<const MapSnapshot>(parts_);
+  snapshot_ = std::make_shared<const MapSnapshot>(builder.parts());
 }
 
 std::shared_ptr<const MapSnapshot> QueryScene::seen_again(std::size_t planes) const {
-  MapSnapshot::Parts parts = parts_;
-  ++parts.revision;
+  const MapSnapshot& now = *snapshot_;
+  MapSnapshot::Parts parts;
+  parts.epoch = now.epoch();
+  parts.revision = now.revision() + 1;
+  parts.cell_size_m = now.cell_size_m();
+  parts.density_threshold = now.density_threshold();
+  parts.cell_count = now.cell_count();
+  parts.planes.assign(now.planes().begin(), now.planes().end());
+  for (const auto& block : now.blocks()) parts.blocks.push_back(block);
   // 7,919 is prime: different ones of all kinds.
   for (std::size_t i = 0; i < planes; ++i) {
     auto& record = parts.planes[7919 * i % parts.planes.size()];

@@ -25,7 +25,6 @@ class QueryScene {
   std::size_t rooms_;
   std::size_t rooms_in_row_;
   Eigen::Isometry3d T_world_building_;
-  MapSnapshot::Parts parts_;
   std::shared_ptr<const MapSnapshot> snapshot_;
 };
 

@@ -77,11 +77,12 @@ TEST(UncertainGrid, SharedBlocksAreCopiedBeforeTheyChange) {
   UncertainGrid grid(1.0);
   const CellRef ref = grid.find_or_add({0, 0, 0});
   grid.writable(ref).plane = 1;
-  const std::vector<std::shared_ptr<const Block>> before = grid.share();
+  BlockTable before;
+  grid.share(before);
   grid.writable(ref).plane = 2;
   grid.find_or_add({1, 0, 0});
-  EXPECT_EQ(before.at(0)->cell(0).plane, 1U);
-  EXPECT_EQ(before.at(0)->size(), 1U);
+  EXPECT_EQ(before[0]->cell(0).plane, 1U);
+  EXPECT_EQ(before[0]->size(), 1U);
   EXPECT_EQ(grid.cell(ref).plane, 2U);
   EXPECT_EQ(grid.cell_count(), 2U);
 }
@@ -90,11 +91,13 @@ TEST(UncertainGrid, UnchangedBlocksStayShared) {
   UncertainGrid grid(1.0);
   grid.find_or_add({0, 0, 0});
   const CellRef other = grid.find_or_add({100, 0, 0});
-  const std::vector<std::shared_ptr<const Block>> before = grid.share();
+  BlockTable before;
+  grid.share(before);
   grid.writable(other).plane = 1;
-  const std::vector<std::shared_ptr<const Block>> after = grid.share();
-  EXPECT_EQ(before.at(0), after.at(0));
-  EXPECT_NE(before.at(1), after.at(1));
+  BlockTable after;
+  grid.share(after);
+  EXPECT_EQ(before[0], after[0]);
+  EXPECT_NE(before[1], after[1]);
 }
 
 TEST(UncertainGrid, APlaceMayHaveASecondCell) {

@@ -35,7 +35,22 @@ inline CellIndex cell_at(const BlockIndex& block, int place) {
 /// 8x8x8 cells, stored packed: a plane through a block touches a fifth of its cells.
 class Block {
  public:
-  explicit Block(const BlockIndex& index) : index_(index) { ordinal_.fill(kAbsent); }
+  Block() : Block(BlockIndex::Zero()) {}
+  explicit Block(const BlockIndex& index) { restart(index); }
+  /// Becomes a block without cells; keeps its memory.
+  void restart(const BlockIndex& index) {
+    index_ = index;
+    ordinal_.fill(kAbsent);
+    rows_.fill(0);
+    places_.clear();
+    cells_.clear();
+  }
+  /// Makes room for cells, and for no more.
+  void reserve(std::size_t cells) {
+    places_.reserve(cells);
+    cells_.reserve(cells);
+  }
+  std::size_t capacity() const { return cells_.capacity(); }
 
   const BlockIndex& index() const { return index_; }
   std::size_t size() const { return cells_.size(); }
@@ -72,7 +87,7 @@ class Block {
 
   BlockIndex index_;
   std::array<std::uint16_t, kBlockCells> ordinal_;  ///< of the cell at each place, with kHasSecond; kAbsent: none
-  std::array<std::uint8_t, kBlockEdge * kBlockEdge> rows_{};
+  std::array<std::uint8_t, kBlockEdge * kBlockEdge> rows_;
   std::vector<std::uint16_t> places_;
   std::vector<Cell> cells_;
 };

@@ -8,6 +8,7 @@
 #include <planemap/neighbourhoods.hpp>
 #include <planemap/plane.hpp>
 #include <planemap/plane_statistics.hpp>
+#include <planemap/pool.hpp>
 #include <planemap/pose_evidence.hpp>
 #include <planemap/uncertain_grid.hpp>
 #include <span>
@@ -136,13 +137,13 @@ class PlaneMap {
   bool is_sibling(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
   void adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods);
   PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const;
-  void bridge(UncertainGrid& grid, GlobalReport& report);
-  PlaneSlot bridge_partner(const UncertainGrid& grid, PlaneSlot slot);
+  void bridge(UncertainGrid& grid, std::span<const CellChange> changes, GlobalReport& report);
+  PlaneSlot bridge_partner(const UncertainGrid& grid, std::span<const CellChange> changes, PlaneSlot slot);
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
   void dissolve(UncertainGrid& grid, PlaneSlot slot);
   bool is_worn_out(PlaneSlot slot) const;
   void take_pose(const ScanPose& scan);
-  PlaneRecord record_of(PlaneSlot slot, std::uint64_t revision) const;
+  void write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) const;
 
   GridConfig grid_config_;
   PlaneConfig config_;
@@ -159,6 +160,7 @@ class PlaneMap {
   std::vector<PlaneSlot> dirty_;                ///< since the last update_records()
   std::vector<RemovedPlane> removed_;           ///< since the last update_records()
   CoarseIndex coarse_;
+  Pool<PlaneRecord> record_pool_;
 
   // What steps of a scan need for themselves; kept to spare allocations.
   std::vector<PlaneSlot> touching_;      ///< each slot once

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <planemap/block_table.hpp>
 #include <planemap/plane.hpp>
 #include <span>
 #include <vector>
@@ -50,9 +51,18 @@ class MapSnapshot {
     std::uint64_t removed_complete_since = 0;
     std::vector<std::shared_ptr<const PlaneRecord>> planes;
     std::vector<RemovedPlane> removed;
-    std::vector<std::shared_ptr<const Block>> blocks;
+    BlockTable blocks;
   };
+  MapSnapshot() = default;
   explicit MapSnapshot(Parts parts) : parts_(std::move(parts)) {}
+  /// For the mapper, before anybody else has it.
+  Parts& parts() { return parts_; }
+  /// Lets go of blocks and planes; keeps its memory.
+  void forget() {
+    parts_.planes.clear();
+    parts_.removed.clear();
+    parts_.blocks.clear();
+  }
 
   std::uint64_t epoch() const { return parts_.epoch; }
   std::uint64_t revision() const { return parts_.revision; }
@@ -71,7 +81,7 @@ class MapSnapshot {
   /// What changed since a revision of this epoch; empty where that is not known any more: take the whole map.
   std::optional<MapDelta> delta_since(std::uint64_t revision) const;
   /// The blocks of cells, in the order in which they were made.
-  std::span<const std::shared_ptr<const Block>> blocks() const { return parts_.blocks; }
+  const BlockTable& blocks() const { return parts_.blocks; }
   bool is_dense(const Cell& cell) const;
   /// A cell of one of the blocks as readers see it. @pre the cell has points
   CellView view_of(const Block& block, std::size_t ordinal) const;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <planemap/block.hpp>
+#include <planemap/block_table.hpp>
 #include <type_traits>
 #include <unordered_map>
 #include <vector>
@@ -74,8 +75,9 @@ class UncertainGrid {
   template <class Visit>
   void for_each_cell(Visit&& visit) const;
 
-  /// The blocks as they are now, in the order in which they were made; they are copied before they change again.
-  const std::vector<std::shared_ptr<const Block>>& share();
+  /// Makes a table that of the blocks as they are now, in the order in which they were made; they are copied before they
+  /// change again. Takes the memory that the table has.
+  void share(BlockTable& table);
 
  private:
   static constexpr std::uint32_t kNoBlock = 0xffffffff;
@@ -92,15 +94,24 @@ class UncertainGrid {
 
   std::uint32_t block_slot(const BlockIndex& index) const;
   std::uint32_t make_block(const BlockIndex& index);
-  Block& writable_block(std::uint32_t slot);
+  Block& writable_block(std::uint32_t slot) {
+    if (written_since_[slot] != shares_) make_own(slot, blocks_[slot]->size());
+    return *blocks_[slot];
+  }
+  /// The same, with room for one more cell.
+  Block& growing_block(std::uint32_t slot);
+  void make_own(std::uint32_t slot, std::size_t cells);
+  std::shared_ptr<Block> take_block(std::size_t cells);
 
   double cell_size_m_;
   double inverse_cell_size_;
   std::size_t cell_count_ = 0;
   std::unordered_map<BlockIndex, std::uint32_t, IndexHash> slots_;
-  std::vector<std::shared_ptr<const Block>> blocks_;  ///< what readers see; the same objects as owned_
-  std::vector<std::shared_ptr<Block>> owned_;
-  std::vector<bool> shared_;                               ///< a snapshot may hold the block
+  BlockTable table_;            ///< holds the blocks, and is what readers get
+  std::vector<Block*> blocks_;  ///< the same
+  std::vector<std::uint64_t> written_since_;  ///< by slot: value of shares_ when the block was made or copied
+  std::uint64_t shares_ = 0;                  ///< how often the blocks were shared
+  std::vector<Pool<Block>> pools_;            ///< by room: of equal ones, so that memory does not grow by being passed on
   std::vector<std::array<std::uint32_t, 27>> neighbours_;  ///< slots of the blocks around each block
 };
 

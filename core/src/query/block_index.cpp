@@ -5,7 +5,7 @@
 
 namespace planemap {
 
-BlockIndexTable::BlockIndexTable(std::span<const std::shared_ptr<const Block>> blocks)
+BlockIndexTable::BlockIndexTable(const BlockTable& blocks)
     : entries_(std::bit_ceil(2 * blocks.size() + 1)) {
   in_order_.reserve(blocks.size());
   for (const auto& block : blocks) {
@@ -18,7 +18,7 @@ BlockIndexTable::BlockIndexTable(std::span<const std::shared_ptr<const Block>> b
   }
 }
 
-bool BlockIndexTable::is_of(std::span<const std::shared_ptr<const Block>> blocks) const {
+bool BlockIndexTable::is_of(const BlockTable& blocks) const {
   return std::equal(blocks.begin(), blocks.end(), in_order_.begin(), in_order_.end(),
                     [](const auto& block, const BlockIndex& index) { return block->index() == index; });
 }

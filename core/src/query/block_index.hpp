@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <memory>
 #include <planemap/block.hpp>
+#include <planemap/block_table.hpp>
 #include <span>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace planemap {
 /// Where blocks are: from their index to their slot, and the part of the grid that holds them all. Immutable.
 class BlockIndexTable {
  public:
-  explicit BlockIndexTable(std::span<const std::shared_ptr<const Block>> blocks);
+  explicit BlockIndexTable(const BlockTable& blocks);
 
   /// Slot of the block; -1: there is none.
   std::int32_t find(const BlockIndex& index) const {
@@ -25,7 +25,7 @@ class BlockIndexTable {
   /// Least and greatest index of any block; empty of a map without blocks.
   const Eigen::AlignedBox3i& extent() const { return extent_; }
   /// Whether it is of the same blocks, in the same slots (their cells may differ).
-  bool is_of(std::span<const std::shared_ptr<const Block>> blocks) const;
+  bool is_of(const BlockTable& blocks) const;
 
  private:
   struct Entry {

@@ -25,7 +25,7 @@ struct QueryIndex {
   std::vector<double> normal_deviations_rad;
   PlaneTree tree;
   std::shared_ptr<const BlockIndexTable> blocks;
-  PlaneBlocks plane_blocks{{}};  ///< for the next index: which blocks are to be looked at for changed planes
+  PlaneBlocks plane_blocks{BlockTable()};  ///< for the next index: which blocks are to be looked at for changed planes
 
   /// Calls visit(cell view) for the dense cells whose virtual centres are in a box, in an order that depends on the map
   /// alone.

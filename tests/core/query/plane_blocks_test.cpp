@@ -11,9 +11,7 @@
 namespace planemap {
 namespace {
 
-using Blocks = std::vector<std::shared_ptr<const Block>>;
-
-void expect_planes_of(const Blocks& blocks, const PlaneBlocks& found) {
+void expect_planes_of(const BlockTable& blocks, const PlaneBlocks& found) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     std::set<PlaneSlot> planes;
     for (std::size_t k = 0; k < blocks[i]->size(); ++k) planes.insert(blocks[i]->cell(k).plane);
@@ -27,14 +25,16 @@ TEST(PlaneBlocks, KnowsThePlanesOfEachBlockAlsoWhereSomeHaveChanged) {
   testing::Random random(81);
   for (int round = 0; round < 50; ++round) {
     const auto map = testing::random_map(random, 10, 300);
-    Blocks blocks(map.snapshot->blocks().begin(), map.snapshot->blocks().end());
+    BlockTable blocks;
+    for (const auto& block : map.snapshot->blocks()) blocks.push_back(block);
     ASSERT_GT(blocks.size(), 2U);
-    const Blocks before(blocks.begin(), blocks.end() - 1);  // one is to come
+    BlockTable before;
+    for (std::size_t i = 0; i + 1 < blocks.size(); ++i) before.push_back(blocks[i]);  // one is to come
     const PlaneBlocks early(before);
     expect_planes_of(before, early);
     auto changed = std::make_shared<Block>(*blocks[1]);
     changed->cell(0).plane = 77;
-    blocks[1] = std::move(changed);
+    blocks.set(1, std::move(changed));
     const PlaneBlocks late(blocks, &early);
     expect_planes_of(blocks, late);
     expect_planes_of(blocks, PlaneBlocks(blocks));
