@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "near_cells.hpp"
@@ -163,7 +164,7 @@ void Assigner::Pass::collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world
     CellChange& change = changes.emplace_back();
     change.cell = ref;
     std::array<double, simd::kSumCount> sum;
-    kernels_.total(accumulator, sum.data());
+    std::copy(std::begin(accumulator.sums), std::end(accumulator.sums), sum.begin());
     Moments& points = change.added.points;
     points.weight = accumulator.count;
     points.first = size_m * Eigen::Vector3d(sum[0], sum[1], sum[2]);

@@ -52,8 +52,7 @@ std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellI
   NearCell& near = cells_.emplace_back();
   if (accumulators_.size() < cells_.size()) accumulators_.resize(2 * cells_.size());
   simd::Accumulator& accumulator = accumulators_[number];
-  accumulator.count = 0;
-  accumulator.divider = simd::kNoDivider;
+  accumulator = {};
   for (int w = 0; w < 3; ++w) accumulator.centre_cells[w] = static_cast<float>(cell(w)) + 0.5F;
   near.ref = ref;
   const CellSums& sums = grid.cell(ref).sums;

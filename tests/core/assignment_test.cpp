@@ -214,8 +214,9 @@ TEST_P(AssignerTwin, AgreesOnPointClouds) {
 std::vector<TwinCase> twin_cases() {
   std::vector<TwinCase> cases = {{true, SimdTarget::kAuto, "ClampedAuto"}, {false, SimdTarget::kAuto, "FreeAuto"}};
   for (const TwinCase& other :
-       {TwinCase{true, SimdTarget::kAvx2, "ClampedAvx2"}, TwinCase{true, SimdTarget::kSse4, "ClampedSse4"},
-        TwinCase{true, SimdTarget::kNeon, "ClampedNeon"}, TwinCase{true, SimdTarget::kScalar, "ClampedScalar"}}) {
+       {TwinCase{true, SimdTarget::kAvx2, "ClampedAvx2"}, TwinCase{true, SimdTarget::kAvx512, "ClampedAvx512"},
+        TwinCase{true, SimdTarget::kSse4, "ClampedSse4"}, TwinCase{true, SimdTarget::kNeon, "ClampedNeon"},
+        TwinCase{true, SimdTarget::kScalar, "ClampedScalar"}}) {
     if (is_supported(other.simd)) cases.push_back(other);
   }
   return cases;

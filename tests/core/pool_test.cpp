@@ -46,8 +46,9 @@ TEST(Pool, TheLastHolderMayBeOnAnotherThread) {
   for (int i = 0; i < 1000; ++i) {
     auto thing = pool.take();
     thing->numbers.push_back(i);
-    std::thread([held = std::shared_ptr<const Thing>(std::move(thing)), i] { EXPECT_EQ(held->numbers.back(), i); })
-        .join();
+    std::thread([held = std::shared_ptr<const Thing>(std::move(thing)), i] {
+      EXPECT_EQ(held->numbers.back(), i);
+    }).join();
   }
   EXPECT_EQ(pool.waiting(), 1U);
 }

@@ -91,8 +91,8 @@ TEST(Divide, AgreesWithItsSlowTwinOnEveryInstructionSet) {
   const std::vector<simd::Divider> dividers = {{{0, 1}, {scan(&level), scan(&leaning)}},
                                                {{2, 3}, {scan(&averted), scan(nullptr)}},
                                                {{4, 5}, {scan(&leaning), scan(nullptr)}}};
-  for (const SimdTarget set :
-       {SimdTarget::kAuto, SimdTarget::kAvx2, SimdTarget::kSse4, SimdTarget::kNeon, SimdTarget::kScalar}) {
+  for (const SimdTarget set : {SimdTarget::kAuto, SimdTarget::kAvx2, SimdTarget::kAvx512, SimdTarget::kSse4,
+                               SimdTarget::kNeon, SimdTarget::kScalar}) {
     if (!is_supported(set)) continue;
     simd::PointChunk chunk;
     chunk.size = 203;

@@ -25,6 +25,7 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"simd", "instruction set; the same one gives the same bytes"}, c.simd,
         std::initializer_list<Choice<SimdTarget>>{{"auto", SimdTarget::kAuto},
                                                   {"avx2", SimdTarget::kAvx2},
+                                                  {"avx512", SimdTarget::kAvx512},
                                                   {"sse4", SimdTarget::kSse4},
                                                   {"neon", SimdTarget::kNeon},
                                                   {"scalar", SimdTarget::kScalar}});

@@ -7,6 +7,7 @@ namespace planemap {
 enum class SimdTarget {
   kAuto,    ///< the best that this machine has
   kAvx2,    ///< x86: AVX2 with FMA
+  kAvx512,  ///< x86: AVX-512 F, BW, CD, DQ, VL
   kSse4,    ///< x86: SSE4.2
   kNeon,    ///< ARM
   kScalar,  ///< any machine

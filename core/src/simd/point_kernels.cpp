@@ -1,5 +1,5 @@
-// AVX-512 and SVE are left out: nothing here could be tested on them, and SVE's vectors don't go into structs.
-#define HWY_DISABLED_TARGETS (HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+// SVE is left out: its vectors don't go into structs.
+#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/point_kernels.cpp"  // read again by foreach_target.h, once for each instruction set
 #include "simd/point_kernels.hpp"
@@ -340,28 +340,39 @@ struct Sums {
   }
 };
 
-HWY_INLINE void add_to(float* lanes, Floats sum) {
-  hn::Store(hn::Add(sum, hn::Load(kFloat, lanes)), kFloat, lanes);
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE void add_to(float* sums, Floats a, Floats b, Floats c, Floats d) {
+  const Floats each[4] = {a, b, c, d};
+  for (int i = 0; i < 4; ++i) sums[i] += hn::GetLane(each[i]);
+}
+#else
+/// Sums of four vectors' lanes, block by block of four: (a b c d) of each.
+HWY_INLINE Floats sums_of_blocks(Floats a, Floats b, Floats c, Floats d) {
+  const hn::RepartitionToWide<FloatTag> pair;
+  const auto ab = hn::BitCast(pair, hn::Add(hn::InterleaveLower(kFloat, a, b), hn::InterleaveUpper(kFloat, a, b)));
+  const auto cd = hn::BitCast(pair, hn::Add(hn::InterleaveLower(kFloat, c, d), hn::InterleaveUpper(kFloat, c, d)));
+  return hn::Add(hn::BitCast(kFloat, hn::InterleaveLower(pair, ab, cd)),
+                 hn::BitCast(kFloat, hn::InterleaveUpper(pair, ab, cd)));
 }
 
+/// Adds the sums of four vectors' lanes to four floats.
+HWY_INLINE void add_to(float* sums, Floats a, Floats b, Floats c, Floats d) {
+  const hn::Full128<float> four;
+  const Floats blocks = sums_of_blocks(a, b, c, d);
+#if HWY_MAX_BYTES >= 32
+  const auto sum = hn::Add(hn::LowerHalf(four, blocks), hn::UpperHalf(four, blocks));
+#else
+  const auto sum = blocks;
+#endif
+  hn::Store(hn::Add(sum, hn::Load(four, sums)), four, sums);
+}
+#endif
+
 HWY_INLINE void flush(const Sums& s, std::size_t n, Accumulator& accumulator) {
-  auto& lanes = accumulator.lanes;
-  if (accumulator.count == 0) {
-    for (auto& lane : lanes) hn::Store(hn::Zero(kFloat), kFloat, lane);
-  }
   accumulator.count += static_cast<std::uint32_t>(n);
-  add_to(lanes[0], s.s0);
-  add_to(lanes[1], s.s1);
-  add_to(lanes[2], s.s2);
-  add_to(lanes[3], s.s3);
-  add_to(lanes[4], s.s4);
-  add_to(lanes[5], s.s5);
-  add_to(lanes[6], s.s6);
-  add_to(lanes[7], s.s7);
-  add_to(lanes[8], s.s8);
-  add_to(lanes[9], s.s9);
-  add_to(lanes[10], s.s10);
-  add_to(lanes[11], s.s11);
+  add_to(accumulator.sums, s.s0, s.s1, s.s2, s.s3);
+  add_to(accumulator.sums + 4, s.s4, s.s5, s.s6, s.s7);
+  add_to(accumulator.sums + 8, s.s8, s.s9, s.s10, s.s11);
 }
 
 void accumulate(const PointChunk& chunk, Accumulator* accumulators) {
@@ -382,16 +393,8 @@ void accumulate(const PointChunk& chunk, Accumulator* accumulators) {
   }
 }
 
-void total(const Accumulator& accumulator, double* sums) {
-  const std::size_t lanes = hn::Lanes(kFloat);
-  for (std::size_t i = 0; i < kSumCount; ++i) sums[i] = static_cast<double>(accumulator.lanes[i][0]);
-  for (std::size_t lane = 1; lane < lanes; ++lane) {
-    for (std::size_t i = 0; i < kSumCount; ++i) sums[i] += static_cast<double>(accumulator.lanes[i][lane]);
-  }
-}
-
 const Kernels* target_kernels() {
-  static const Kernels kKernels = {project_depth, project_cloud, find_runs, assign, divide, accumulate, total};
+  static const Kernels kKernels = {project_depth, project_cloud, find_runs, assign, divide, accumulate};
   return &kKernels;
 }
 
@@ -416,6 +419,8 @@ std::int64_t highway_target(SimdTarget target) {
       return HWY_TARGETS;
     case SimdTarget::kAvx2:
       return HWY_TARGETS & HWY_AVX2;
+    case SimdTarget::kAvx512:
+      return HWY_TARGETS & HWY_AVX3;
     case SimdTarget::kSse4:
       return HWY_TARGETS & HWY_SSE4;
     case SimdTarget::kNeon:
@@ -427,8 +432,8 @@ std::int64_t highway_target(SimdTarget target) {
 }
 
 /// By SimdTarget; nullptr: not supported. Nothing else in the process asks Highway to choose.
-std::array<const Kernels*, 5> all_kernels() {
-  std::array<const Kernels*, 5> table{};
+std::array<const Kernels*, 6> all_kernels() {
+  std::array<const Kernels*, 6> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     const std::int64_t target = highway_target(static_cast<SimdTarget>(i)) & hwy::SupportedTargets();
     if (target == 0) continue;
@@ -439,7 +444,7 @@ std::array<const Kernels*, 5> all_kernels() {
 }
 
 const Kernels* find_kernels(SimdTarget target) {
-  static const std::array<const Kernels*, 5> kTable = all_kernels();
+  static const std::array<const Kernels*, 6> kTable = all_kernels();
   return kTable[static_cast<std::size_t>(target)];
 }
 

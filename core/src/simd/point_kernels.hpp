@@ -98,13 +98,13 @@ struct Run {
   float centre_cells[3] = {};         ///< of the cell, as PointChunk::place_cells
 };
 
-/// Sums over the points that a cell takes, a partial one in each lane: q (3), q q^T (xx xy xz yy yz zz) with q from the
-/// cell's centre, in cells; the variances along the sensor's axes (3), square metres.
+/// Sums over the points that a cell takes: q (3), q q^T (xx xy xz yy yz zz) with q from the cell's centre, in cells;
+/// the variances along the sensor's axes (3), square metres.
 struct Accumulator {
-  float centre_cells[3] = {};         ///< of the cell, as PointChunk::place_cells
-  std::uint32_t count = 0;            ///< points; while it is 0 the lanes are undefined
+  float centre_cells[3] = {};  ///< of the cell, as PointChunk::place_cells
+  std::uint32_t count = 0;     ///< points
+  alignas(16) float sums[kSumCount] = {};
   std::int32_t divider = kNoDivider;  ///< by which its points are told from those of the other cell at its place
-  alignas(32) float lanes[kSumCount][kMaxLanes];
 };
 
 /// The kernels for one instruction set. All give the same to rounding.
@@ -121,8 +121,6 @@ struct Kernels {
   void (*divide)(PointChunk& chunk, const Accumulator* accumulators, const Divider* dividers);
   /// Adds the points to those that take them.
   void (*accumulate)(const PointChunk& chunk, Accumulator* accumulators);
-  /// Adds up the lanes.
-  void (*total)(const Accumulator& accumulator, double* sums);
 };
 
 }  // namespace planemap::simd
