@@ -103,7 +103,7 @@ std::vector<std::string> scenes_of(const std::vector<std::string>& wanted) {
   std::vector<std::string> names;
   for (const std::string& want : wanted) {
     bool found = false;
-    for (const auto& scene : planemap::simulation::scenes()) {
+    for (const auto& scene : planemap::simulation::scenes_with_an_end()) {
       const bool special = scene.name != "apartment";
       if (want != scene.name && want != "all" && !(want == "special" && special)) continue;
       names.emplace_back(scene.name);
@@ -116,7 +116,7 @@ std::vector<std::string> scenes_of(const std::vector<std::string>& wanted) {
 
 std::string scenes_help() {
   std::string text = "all, special (all but the apartment), or any of";
-  for (const auto& scene : planemap::simulation::scenes()) text += " " + std::string(scene.name);
+  for (const auto& scene : planemap::simulation::scenes_with_an_end()) text += " " + std::string(scene.name);
   return text;
 }
 

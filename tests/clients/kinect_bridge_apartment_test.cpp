@@ -220,6 +220,9 @@ TEST(SimulatedSource, RefusesSettingsThatMeanNothing) {
   config.rate_hz = 0.0;
   EXPECT_THROW(SimulatedSource{config}, std::invalid_argument);
   config = small_config(1, 1);
+  config.time_lapse = 0.0;
+  EXPECT_THROW(SimulatedSource{config}, std::invalid_argument);
+  config = small_config(1, 1);
   config.pose_noise.sigma_m = -1.0;
   EXPECT_THROW(SimulatedSource{config}, std::invalid_argument);
 }

@@ -4,6 +4,7 @@
 
 #include <bot_core/pose_t.hpp>
 #include <cstdlib>
+#include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
 #include <planemap_lcm/depth_scan_t.hpp>
@@ -135,6 +136,19 @@ TEST_F(KinectBridge, SpecialRoomsAreRenderedByName) {
   const auto truth = nlohmann::json::parse(read_file(path("truth.json")));
   ASSERT_EQ(truth.at("planes").size(), 6u);
   EXPECT_EQ(truth.at("planes")[1].at("name"), "ceiling");
+}
+
+TEST_F(KinectBridge, TruthOfTheBuildingIsWhatWasSeenOfIt) {
+  const auto planes = [this](const std::string& frames) {
+    const Finished done = bridge("--simulate building --time-lapse 15 --frames " + frames + " -q --log " +
+                                 path("building.lcm") + " --truth " + path("truth.json"));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    std::ifstream file(path("truth.json"));
+    return nlohmann::json::parse(file).at("planes").size();
+  };
+  const std::size_t few = planes("2");
+  EXPECT_GT(few, 2u);
+  EXPECT_GT(planes("40"), few + 5);
 }
 
 TEST_F(KinectBridge, SameSeedGivesTheSameLog) {

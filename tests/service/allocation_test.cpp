@@ -21,7 +21,7 @@ namespace planemap::service {
 namespace {
 
 constexpr std::size_t kRoundFrames = 20;  // views of a room, over and over again
-constexpr std::size_t kSettlingRounds = 20;
+constexpr std::size_t kSettlingRounds = 30;
 constexpr std::size_t kScans = 100;
 
 /// The same views with the same noise, so that nothing is new after the first rounds.

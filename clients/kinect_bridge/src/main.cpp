@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <planemap/simulation/scenes.hpp>
 #include <planemap/simulation/simulated_source.hpp>
 #include <planemap/simulation/truth_file.hpp>
 #include <planemap/sources/open_folder.hpp>
@@ -27,13 +28,14 @@ Expected<std::unique_ptr<sources::FrameSource>> open_source(const Options& optio
     const auto open = [&options] { return sources::open_folder(options.dataset, options.folder); };
     return options.loop ? LoopedSource::open(open) : open();
   }
-  auto simulated = std::make_unique<simulation::SimulatedSource>(options.simulation);
-  if (!options.truth_path.empty()) {
-    if (auto written = simulation::write_truth_file(simulated->truth(), options.truth_path); !written) {
-      return tl::make_unexpected(written.error());
-    }
-  }
-  return std::unique_ptr<sources::FrameSource>(std::move(simulated));
+  return std::make_unique<simulation::SimulatedSource>(options.simulation);
+}
+
+/// Writes what is known of a simulated scene so far, where that was asked for.
+Expected<void> write_truth(const sources::FrameSource& source, const Options& options) {
+  const auto* simulated = dynamic_cast<const simulation::SimulatedSource*>(&source);
+  if (simulated == nullptr || options.truth_path.empty()) return {};
+  return simulation::write_truth_file(simulated->truth(), options.truth_path);
 }
 
 Expected<std::unique_ptr<Sink>> open_sink(const Options& options) {
@@ -44,6 +46,7 @@ int run(const Options& options) {
   StopSignals stop;
   auto source = open_source(options);
   if (!source) return complain(source.error().message);
+  if (auto written = write_truth(**source, options); !written) return complain(written.error().message);
   auto sink = open_sink(options);
   if (!sink) return complain(sink.error().message);
 
@@ -55,6 +58,9 @@ int run(const Options& options) {
     const auto report = feed.run([&progress](const FeedReport& so_far) { progress.show(so_far); });
     if (!report) return complain(report.error().message);
     summary.report = *report;
+  }
+  if (options.simulation.scene == simulation::kBuildingScene) {  // now it is known what was seen of it
+    if (auto written = write_truth(**source, options); !written) return complain(written.error().message);
   }
   summary.skipped = (*source)->skipped();
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -60,9 +60,10 @@ void add_source_options(CLI::App& app, Options& options, Raw& raw) {
           ->check(CLI::IsMember(scene_names()).description(""));
   source->require_option(1);
 
-  app.add_option("--frames", raw.frames,
-                 "stop after N frames; a simulation spreads them evenly over one tour (default: all; one tour of the "
-                 "apartment at true speed, of a special room in 28 to 100 frames)")
+  app.add_option(
+         "--frames", raw.frames,
+         "stop after N frames; a simulation spreads them evenly over one tour (default: all; one tour of the "
+         "apartment at true speed, of a special room in 28 to 100 frames, 20,000 of the building, which has no end)")
       ->type_name("N")
       ->check(in_range(std::size_t{1}, std::size_t{1'000'000'000}));
   app.add_flag("--loop", options.loop, "begin again at the end, until stopped; utimes go on");
@@ -78,7 +79,14 @@ void add_source_options(CLI::App& app, Options& options, Raw& raw) {
       ->type_name("N")
       ->capture_default_str()
       ->needs(simulate);
-  app.add_option("--truth", options.truth_path, "write the known planes to this file, as planes.json")
+  app.add_option("--time-lapse", options.simulation.time_lapse,
+                 "seconds of the tour that pass in a second of the recording")
+      ->type_name("FACTOR")
+      ->capture_default_str()
+      ->check(in_range(0.01, 1000.0))
+      ->needs(simulate);
+  app.add_option("--truth", options.truth_path,
+                 "write the known planes to this file, as planes.json; of the building those seen, at the end")
       ->type_name("FILE")
       ->needs(simulate);
   app.add_option("--noise", options.simulation.depth_noise.scale,

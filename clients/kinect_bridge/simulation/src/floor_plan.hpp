@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "footprint.hpp"
@@ -20,8 +21,10 @@ struct WallFace {
 
 struct Room {
   Rectangle floor;
-  std::array<std::size_t, 4> faces{};  ///< wall faces at low x, high x, low y, high y
+  std::array<std::size_t, 4> faces{};  ///< wall faces at low x, high x, low y, high y; kOpenSide: there is none
+  bool furnished = true;               ///< else nothing stands in it
 };
+constexpr std::size_t kOpenSide = std::numeric_limits<std::size_t>::max();
 
 /// An opening through the wall between two rooms.
 struct Door {

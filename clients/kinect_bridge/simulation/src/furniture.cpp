@@ -38,6 +38,7 @@ class Furnisher {
     });
     bool board_stands = false;
     for (const std::size_t room : order) {
+      if (!plan_.rooms[room].furnished) continue;
       if (!board_stands) board_stands = lean(room, FurnitureKind::kSlantedBoard);
       set_table(room);
       const bool tall_first = random_.chance(0.5);
@@ -161,7 +162,9 @@ class Furnisher {
   std::optional<Furniture> leaf_candidate(const Door& door) {
     const bool in_high_room = random_.chance(0.5);
     const bool hinge_at_end = random_.chance(0.5);
-    const Rectangle& room = plan_.rooms[in_high_room ? door.high_room : door.low_room].floor;
+    const Room& opened_into = plan_.rooms[in_high_room ? door.high_room : door.low_room];
+    if (!opened_into.furnished) return std::nullopt;
+    const Rectangle& room = opened_into.floor;
     const double behind_m =
         hinge_at_end ? room.max_m[1 - door.axis] - door.to_m : door.from_m - room.min_m[1 - door.axis];
     if (behind_m < kSideViewM) return std::nullopt;

@@ -21,6 +21,24 @@ void check(const PinholeIntrinsics& intrinsics) {
 
 Renderer::Renderer(std::span<const Surface> surfaces, const PinholeIntrinsics& intrinsics) : intrinsics_(intrinsics) {
   check(intrinsics);
+  show(surfaces);
+  const std::size_t pixels = static_cast<std::size_t>(intrinsics.width) * intrinsics.height;
+  inverse_depth_.resize(pixels);
+  face_index_.resize(pixels);
+  image_.depth_m.resize(pixels);
+  image_.surface.resize(pixels);
+  image_.cos_incidence.resize(pixels);
+  ray_length_.reserve(pixels);
+  for (int v = 0; v < intrinsics.height; ++v) {
+    for (int u = 0; u < intrinsics.width; ++u) {
+      const Eigen::Vector3d ray((u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy, 1.0);
+      ray_length_.push_back(static_cast<float>(ray.norm()));
+    }
+  }
+}
+
+void Renderer::show(std::span<const Surface> surfaces) {
+  faces_.clear();
   for (const Surface& surface : surfaces) {
     for (const ConvexPiece& piece_m : surface.pieces_m) {
       faces_.push_back(Face{piece_m, surface.plane.normal(), surface.plane.d(), surface.id});
@@ -29,20 +47,7 @@ Renderer::Renderer(std::span<const Surface> surfaces, const PinholeIntrinsics& i
   if (faces_.size() > std::numeric_limits<std::uint16_t>::max()) {
     throw std::invalid_argument("Renderer: more than 65535 polygons");
   }
-  const std::size_t pixels = static_cast<std::size_t>(intrinsics.width) * intrinsics.height;
-  inverse_depth_.resize(pixels);
-  face_index_.resize(pixels);
-  image_.depth_m.resize(pixels);
-  image_.surface.resize(pixels);
-  image_.cos_incidence.resize(pixels);
   face_distance_m_.resize(faces_.size());
-  ray_length_.reserve(pixels);
-  for (int v = 0; v < intrinsics.height; ++v) {
-    for (int u = 0; u < intrinsics.width; ++u) {
-      const Eigen::Vector3d ray((u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy, 1.0);
-      ray_length_.push_back(static_cast<float>(ray.norm()));
-    }
-  }
 }
 
 const RenderedImage& Renderer::render(const Eigen::Isometry3d& T_world_sensor) {

@@ -24,8 +24,9 @@ constexpr std::array kScenes = {
     SceneInfo{"column", "a round column of 40 cm, which is no plane"},
     SceneInfo{"corridor", "long walls that are seen at grazing angles alone"},
     SceneInfo{"ceiling-glimpse", "a ceiling that is seen in three frames"},
+    SceneInfo{kBuildingScene, "corridors and furnished rooms without end, another one for each seed"},
 };
-constexpr std::array<MakeScene, kScenes.size()> kMakers = {
+constexpr std::array<MakeScene, kScenes.size() - 1> kMakers = {
     make_apartment_scene, make_door_ajar, make_thin_walls, make_cabinet_fronts, make_table_tops, make_stairs, make_ramp,
     make_pillar,          make_column,    make_corridor,   make_ceiling_glimpse};
 
@@ -35,11 +36,15 @@ std::span<const SceneInfo> scenes() {
   return kScenes;
 }
 
+std::span<const SceneInfo> scenes_with_an_end() {
+  return std::span(kScenes).first(kMakers.size());
+}
+
 Scene make_scene(std::string_view name, Random& random) {
-  const auto found =
-      std::find_if(kScenes.begin(), kScenes.end(), [&](const SceneInfo& scene) { return scene.name == name; });
-  if (found == kScenes.end()) throw std::invalid_argument("SimulationConfig: no scene '" + std::string(name) + "'");
-  return kMakers[static_cast<std::size_t>(found - kScenes.begin())](random);
+  const auto all = scenes_with_an_end();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const SceneInfo& scene) { return scene.name == name; });
+  if (found == all.end()) throw std::invalid_argument("SimulationConfig: no scene '" + std::string(name) + "'");
+  return kMakers[static_cast<std::size_t>(found - all.begin())](random);
 }
 
 }  // namespace planemap::simulation

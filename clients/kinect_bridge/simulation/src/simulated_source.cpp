@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <planemap/simulation/renderer.hpp>
 #include <planemap/simulation/simulated_source.hpp>
@@ -7,22 +6,20 @@
 
 #include "pose_noise.hpp"
 #include "random.hpp"
-#include "scene.hpp"
+#include "world.hpp"
 
 namespace planemap::simulation {
 namespace {
 
 // Streams of the seed, so that one part of the simulation does not change another.
-enum Stream : std::uint64_t { kLayoutStream = 1, kPoseStream = 2, kDepthStream = 3 };
-
-Scene scene_of(const SimulationConfig& config) {
-  Random random(config.seed, kLayoutStream);
-  return make_scene(config.scene, random);
-}
+enum Stream : std::uint64_t { kPoseStream = 2, kDepthStream = 3 };
 
 const SimulationConfig& checked(const SimulationConfig& config) {
   if (!std::isfinite(config.rate_hz) || config.rate_hz <= 0.0) {
     throw std::invalid_argument("SimulationConfig: rate_hz must be > 0");
+  }
+  if (!std::isfinite(config.time_lapse) || config.time_lapse <= 0.0) {
+    throw std::invalid_argument("SimulationConfig: time_lapse must be > 0");
   }
   if (config.frames == std::size_t{0}) throw std::invalid_argument("SimulationConfig: frames must be > 0");
   return config;
@@ -34,18 +31,14 @@ class SimulatedSource::Impl {
  public:
   explicit Impl(const SimulationConfig& wanted)
       : config(checked(wanted)),
-        scene(scene_of(config)),
-        renderer(scene.surfaces, config.intrinsics),
+        world(make_world(config)),
+        renderer({}, config.intrinsics),
         sensor(config.depth_noise, config.intrinsics),
-        pose_noise(config.pose_noise, Random(config.seed, kPoseStream)),
-        frames_a_tour(config.frames.value_or(scene.frames.value_or(
-            std::max<std::size_t>(1, static_cast<std::size_t>(scene.tour.duration_s() * config.rate_hz))))) {}
+        pose_noise(config.pose_noise, Random(config.seed, kPoseStream)) {}
 
   sources::Frame next_frame() {
-    const double tour_time_s =
-        static_cast<double>(index % frames_a_tour) / static_cast<double>(frames_a_tour) * scene.tour.duration_s();
-    T_world_sensor = scene.T_world_scene * scene.tour.T_scene_sensor(tour_time_s);
-    rendered = &renderer.render(T_world_sensor);
+    T_world_sensor = world->T_world_sensor(index);
+    rendered = &world->look(renderer, T_world_sensor);
     sources::Frame frame;
     frame.scan.utime = kFirstUtime + std::llround(static_cast<double>(index) / config.rate_hz * 1e6);
     frame.scan.intrinsics = config.intrinsics;
@@ -57,11 +50,10 @@ class SimulatedSource::Impl {
   }
 
   SimulationConfig config;
-  Scene scene;
+  std::unique_ptr<World> world;
   Renderer renderer;
   KinectSensor sensor;
   PoseNoise pose_noise;
-  std::size_t frames_a_tour;
   std::map<std::string, std::size_t> skipped;
 
   std::size_t index = 0;  // of the next frame
@@ -73,13 +65,13 @@ SimulatedSource::SimulatedSource(const SimulationConfig& config) : impl_(std::ma
 SimulatedSource::~SimulatedSource() = default;
 
 std::optional<sources::Frame> SimulatedSource::next() {
-  if (!impl_->config.loop && impl_->index == impl_->frames_a_tour) return std::nullopt;
+  if (!impl_->config.loop && impl_->index == impl_->world->frames()) return std::nullopt;
   return impl_->next_frame();
 }
 
 std::optional<std::size_t> SimulatedSource::size() const {
   if (impl_->config.loop) return std::nullopt;
-  return impl_->frames_a_tour;
+  return impl_->world->frames();
 }
 
 const std::map<std::string, std::size_t>& SimulatedSource::skipped() const {
@@ -87,14 +79,14 @@ const std::map<std::string, std::size_t>& SimulatedSource::skipped() const {
 }
 
 std::optional<Eigen::Vector3d> SimulatedSource::gravity_direction() const {
-  return Eigen::Vector3d(impl_->scene.T_world_scene.linear() * -Eigen::Vector3d::UnitZ());
+  return impl_->world->down();
 }
 
 const std::vector<Surface>& SimulatedSource::truth() const {
-  return impl_->scene.surfaces;
+  return impl_->world->truth();
 }
 double SimulatedSource::tour_s() const {
-  return impl_->scene.tour.duration_s();
+  return impl_->world->tour_s();
 }
 
 std::span<const SurfaceId> SimulatedSource::label_image() const {

@@ -11,18 +11,11 @@ namespace planemap::simulation {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSampleS = 0.05;
-constexpr double kSpeedMPerS = 0.45;
-constexpr double kTurnRadPerS = 0.75;     // while turning on the spot
-constexpr double kMaxTurnRadPerS = 1.2;   // at any time
-constexpr double kSmoothingS = 0.5;       // standard deviation of the smoothing of the motion
 constexpr double kLeastClearanceM = 0.3;  // of planned paths; smoothing cuts corners by up to 0.1 m
 constexpr double kViewClearanceM = 0.4;   // of the points that are aimed at
 constexpr double kWallDistanceM = 0.6;    // when driving along the walls
 constexpr double kViewDistanceM = 1.5;    // from something that is gone to be looked at
 constexpr double kViewS = 5.0;
-constexpr double kCameraHeightM = 1.2;
-constexpr double kCameraHeightSwayM = 0.08;
 
 double rad(double deg) {
   return deg * kPi / 180.0;
@@ -52,7 +45,7 @@ class TourPlanner {
       : plan_(apartment.plan), views_(views), free_space_(plan_.outline, obstacles_of(apartment)) {}
 
   /// One round; empty if a room can't be reached.
-  std::vector<Tour::Sample> drive() {
+  std::vector<CameraSample> drive() {
     const std::vector<std::size_t> order = rooms_in_order();
     const Eigen::Vector2d start_m = free_space_.roomiest(plan_.rooms[order.front()].floor);
     position_m_ = start_m;
@@ -63,9 +56,9 @@ class TourPlanner {
     return std::move(raw_);
   }
 
-  double least_clearance_m(const std::vector<Tour::Sample>& samples) const {
+  double least_clearance_m(const std::vector<CameraSample>& samples) const {
     double least_m = kLeastClearanceM;
-    for (const Tour::Sample& sample : samples) {
+    for (const CameraSample& sample : samples) {
       least_m = std::min(least_m, free_space_.clearance_m(sample.position_m.head<2>()));
     }
     return least_m;
@@ -96,7 +89,7 @@ class TourPlanner {
     const double yaw_rad = raw_.empty() ? wanted_yaw_rad : raw_.back().yaw_rad;
     const double most_rad = kMaxTurnRadPerS * kSampleS;
     const double step_rad = std::clamp(std::remainder(wanted_yaw_rad - yaw_rad, 2.0 * kPi), -most_rad, most_rad);
-    Tour::Sample next;
+    CameraSample next;
     next.position_m << position_m, kCameraHeightM + kCameraHeightSwayM * wave(time_s(), 23.0);
     next.yaw_rad = yaw_rad + step_rad;
     next.pitch_rad = pitch_rad;
@@ -203,12 +196,12 @@ class TourPlanner {
   const FloorPlan& plan_;
   const std::vector<View>& views_;
   FreeSpace free_space_;
-  std::vector<Tour::Sample> raw_;
+  std::vector<CameraSample> raw_;
   Eigen::Vector2d position_m_ = Eigen::Vector2d::Zero();
   bool reachable_ = true;
 };
 
-Tour::Tour(const std::vector<Sample>& raw)
+Tour::Tour(const std::vector<CameraSample>& raw)
     : samples_(raw.size()),
       turn_rad_(2.0 * kPi * std::round((raw.back().yaw_rad - raw.front().yaw_rad) / (2.0 * kPi))) {
   const auto reach = static_cast<int>(3.0 * kSmoothingS / kSampleS);
@@ -223,7 +216,7 @@ Tour::Tour(const std::vector<Sample>& raw)
     for (int k = -reach; k <= reach; ++k) {
       // The neighbours of the ends are in the rounds before and after: division that rounds down.
       const int rounds = (i + k >= 0 ? i + k : i + k - count + 1) / count;
-      const Sample& neighbour = raw[static_cast<std::size_t>(i + k - rounds * count)];
+      const CameraSample& neighbour = raw[static_cast<std::size_t>(i + k - rounds * count)];
       const double weight = weights[k + reach] / weight_sum;
       samples_[i].position_m += weight * neighbour.position_m;
       samples_[i].yaw_rad += weight * (neighbour.yaw_rad + rounds * turn_rad_);
@@ -234,15 +227,15 @@ Tour::Tour(const std::vector<Sample>& raw)
 
 std::optional<Tour> Tour::plan(const Apartment& apartment, const std::vector<View>& views) {
   TourPlanner planner(apartment, views);
-  const std::vector<Sample> raw = planner.drive();
+  const std::vector<CameraSample> raw = planner.drive();
   if (raw.empty()) return std::nullopt;
   const Tour tour(raw);
   if (planner.least_clearance_m(tour.samples_) < 0.5 * kLeastClearanceM) return std::nullopt;
   return tour;
 }
 
-void Tour::go_on(const Sample& goal, std::vector<Sample>& raw) {
-  const Sample start = raw.back();
+void Tour::go_on(const CameraSample& goal, std::vector<CameraSample>& raw) {
+  const CameraSample start = raw.back();
   const Eigen::Vector3d way_m = goal.position_m - start.position_m;
   const double yaw_rad = std::remainder(goal.yaw_rad - start.yaw_rad, 2.0 * kPi);
   const double pitch_rad = goal.pitch_rad - start.pitch_rad;
@@ -259,9 +252,10 @@ void Tour::go_on(const Sample& goal, std::vector<Sample>& raw) {
 Tour Tour::through(const std::vector<Station>& stations) {
   const auto sample_at = [](const Station& station) {
     const Eigen::Vector3d view_m = station.target_m - station.position_m;
-    return Sample{station.position_m, direction_rad(view_m.head<2>()), std::atan2(view_m.z(), view_m.head<2>().norm())};
+    return CameraSample{station.position_m, direction_rad(view_m.head<2>()),
+                        std::atan2(view_m.z(), view_m.head<2>().norm())};
   };
-  std::vector<Sample> raw = {sample_at(stations.front())};
+  std::vector<CameraSample> raw = {sample_at(stations.front())};
   for (std::size_t i = 1; i < stations.size(); ++i) go_on(sample_at(stations[i]), raw);
   go_on(sample_at(stations.front()), raw);
   return Tour(raw);
@@ -276,19 +270,11 @@ Eigen::Isometry3d Tour::T_scene_sensor(double time_s) const {
   const double at = (time_s - rounds * duration_s()) / kSampleS;
   const std::size_t first = std::min(static_cast<std::size_t>(at), samples_.size() - 1);
   const bool last = first + 1 == samples_.size();
-  const Sample& a = samples_[first];
-  const Sample& b = samples_[last ? 0 : first + 1];
-  const double share = at - static_cast<double>(first);
-  const double yaw_rad = a.yaw_rad + share * (b.yaw_rad + (last ? turn_rad_ : 0.0) - a.yaw_rad);
-  const double pitch_rad = a.pitch_rad + share * (b.pitch_rad - a.pitch_rad);
-
-  const Eigen::Vector3d forward(std::cos(yaw_rad) * std::cos(pitch_rad), std::sin(yaw_rad) * std::cos(pitch_rad),
-                                std::sin(pitch_rad));
-  const Eigen::Vector3d right(std::sin(yaw_rad), -std::cos(yaw_rad), 0.0);
-  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
-  transform.linear() << right, forward.cross(right), forward;
-  transform.translation() = a.position_m + share * (b.position_m - a.position_m);
-  return transform;
+  const CameraSample& a = samples_[first];
+  const CameraSample& b = samples_[last ? 0 : first + 1];
+  CameraSample next = b;
+  if (last) next.yaw_rad += turn_rad_;
+  return simulation::T_scene_sensor(between(a, next, at - static_cast<double>(first)));
 }
 
 }  // namespace planemap::simulation

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apartment.hpp"
+#include "camera_sample.hpp"
 
 namespace planemap::simulation {
 
@@ -37,19 +38,13 @@ class Tour {
 
  private:
   friend class TourPlanner;
-  /// Camera at one instant.
-  struct Sample {
-    Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-    double yaw_rad = 0.0;    ///< about z, continuous: not wrapped
-    double pitch_rad = 0.0;  ///< up is positive
-  };
   /// @param raw  one round, its last yaw equal to its first but for whole turns
-  explicit Tour(const std::vector<Sample>& raw);
+  explicit Tour(const std::vector<CameraSample>& raw);
   /// Appends the way from the last sample to a goal, as fast as the robot drives and turns.
-  static void go_on(const Sample& goal, std::vector<Sample>& raw);
+  static void go_on(const CameraSample& goal, std::vector<CameraSample>& raw);
 
-  std::vector<Sample> samples_;  // every kSampleS; the last one is one sample before the first of the next round
-  double turn_rad_ = 0.0;        // by which yaw grows in a round: a multiple of 2 pi
+  std::vector<CameraSample> samples_;  // every kSampleS; the last one is one sample before the first of the next round
+  double turn_rad_ = 0.0;              // by which yaw grows in a round: a multiple of 2 pi
 };
 
 }  // namespace planemap::simulation

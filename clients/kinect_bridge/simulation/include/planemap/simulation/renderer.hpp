@@ -23,6 +23,9 @@ class Renderer {
   /// Throws std::invalid_argument if the intrinsics are none of a camera.
   Renderer(std::span<const Surface> surfaces, const PinholeIntrinsics& intrinsics);
 
+  /// Other surfaces from now on. Throws std::invalid_argument if they have more than 65,535 pieces.
+  void show(std::span<const Surface> surfaces);
+
   /// What the camera sees from a pose; valid until the next call.
   const RenderedImage& render(const Eigen::Isometry3d& T_world_sensor);
 

@@ -28,7 +28,9 @@ struct SimulationConfig {
   std::string scene = "apartment";    ///< one of scenes()
   std::uint64_t seed = 1;             ///< of the apartment, of a room's place in the world, and of the noise
   std::optional<std::size_t> frames;  ///< spread evenly over one tour; empty: a special room's own number, or as many
-                                      ///< as the rate gives at true speed
+                                      ///< as the rate gives. The building's tour has no end: so many frames at the
+                                      ///< rate; empty: 20,000
+  double time_lapse = 1.0;            ///< seconds of the tour that pass in a second of the recording
   bool loop = false;                  ///< go round for ever, each time with new noise
   double rate_hz = 30.0;              ///< of the frames' utimes; the first one is at kFirstUtime
   PinholeIntrinsics intrinsics{640, 480, 585.0, 585.0, 320.0, 240.0};
@@ -51,15 +53,17 @@ class SimulatedSource final : public sources::FrameSource {
   const std::map<std::string, std::size_t>& skipped() const override;  ///< always empty
   std::optional<Eigen::Vector3d> gravity_direction() const override;
 
-  /// All surfaces of the scene, by id (1, 2, ...), world frame.
+  /// All surfaces of the scene, by id (1, 2, ...), world frame. Of the building what was seen of them so far, with gaps
+  /// between the ids, which takes a while; valid until the next call.
   const std::vector<Surface>& truth() const;
-  /// Time that one tour takes at the robot's true speed.
+  /// Time that one tour takes at the robot's true speed; of the building, what its frames show.
   double tour_s() const;
 
   // What is known about the frame that next() gave last; empty spans before the first.
 
   /// Row-major, width * height: the surface in each pixel's line of sight, kNoSurface where there is none. Also set
-  /// where the frame has no return: mask with its depth where that matters.
+  /// where the frame has no return: mask with its depth where that matters. In the building nothing is drawn that is
+  /// too far away for any return.
   std::span<const SurfaceId> label_image() const;
   /// Row-major, width * height: exact depth, metres; 0 where there is no surface.
   std::span<const float> true_depth_m() const;

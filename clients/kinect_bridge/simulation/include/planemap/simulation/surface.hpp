@@ -9,7 +9,7 @@
 namespace planemap::simulation {
 
 /// Names a surface of a scene; 0 is none.
-using SurfaceId = std::uint16_t;
+using SurfaceId = std::uint32_t;
 constexpr SurfaceId kNoSurface = 0;
 
 /// A convex polygon in space: its corners in order, without the first again at the end, world frame, metres.
