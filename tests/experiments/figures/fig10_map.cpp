@@ -4,10 +4,12 @@
 
 #include "figures/figures.hpp"
 #include "figures/map_faces.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/svg_page.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 FigureResult draw_fig10(const std::filesystem::path& folder, const SceneRun& scene) {
   constexpr double kElevationRad = 0.62;

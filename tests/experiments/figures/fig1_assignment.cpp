@@ -6,6 +6,8 @@
 
 namespace planemap::experiments {
 
+using namespace plot;
+
 namespace {
 
 constexpr double kCellPixels = 170.0;

@@ -6,12 +6,14 @@
 #include <planemap/cell_normals.hpp>
 
 #include "figures/figures.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/svg_page.hpp"
 #include "synthetic/examples.hpp"
 #include "synthetic/tangent_surfaces.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 namespace {
 

@@ -5,12 +5,14 @@
 #include <numbers>
 
 #include "figures/figures.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/chart.hpp"
 #include "plot/svg_page.hpp"
 #include "synthetic/tangent_surfaces.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 namespace {
 

@@ -10,6 +10,8 @@
 
 namespace planemap::experiments {
 
+using namespace plot;
+
 namespace {
 
 constexpr auto kStageWords = std::to_array<const char*>(

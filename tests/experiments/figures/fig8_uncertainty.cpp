@@ -9,10 +9,12 @@
 
 #include "figures/figures.hpp"
 #include "figures/map_faces.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/svg_page.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 namespace {
 

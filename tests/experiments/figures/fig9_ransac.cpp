@@ -7,12 +7,14 @@
 
 #include "figures/figures.hpp"
 #include "figures/map_faces.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/svg_page.hpp"
 #include "real/plane_comparison.hpp"
 #include "real/ransac_planes.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 namespace {
 

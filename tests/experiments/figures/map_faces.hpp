@@ -5,7 +5,7 @@
 #include <planemap/snapshot.hpp>
 #include <vector>
 
-#include "plot/plane_picture.hpp"
+#include "picture/plane_picture.hpp"
 #include "real/ransac_planes.hpp"
 
 namespace planemap::experiments {

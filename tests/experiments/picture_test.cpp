@@ -6,11 +6,13 @@
 #include <support/temporary_folder.hpp>
 
 #include "figures/figures.hpp"
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
+#include "picture/plane_picture.hpp"
 #include "plot/chart.hpp"
-#include "plot/plane_picture.hpp"
 
 namespace planemap::experiments {
+
+using namespace plot;
 namespace {
 
 TEST(Ticks, AreRoundAndIncludeRoundEnds) {

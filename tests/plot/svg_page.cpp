@@ -8,7 +8,7 @@
 
 #include "export/xml_text.hpp"
 
-namespace planemap::experiments {
+namespace planemap::plot {
 
 namespace {
 
@@ -111,4 +111,4 @@ void SvgPage::save(const std::filesystem::path& file) const {
   if (!out) throw std::runtime_error(file.string() + " can't be written");
 }
 
-}  // namespace planemap::experiments
+}  // namespace planemap::plot

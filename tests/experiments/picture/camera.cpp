@@ -1,10 +1,12 @@
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 Camera::Camera(const Eigen::Vector3d& up, double azimuth_rad, double elevation_rad) {
   // The horizontal direction that azimuths count from: of the world axes the one that is least upright.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap::experiments {
+namespace planemap::plot {
 
 namespace {
 
@@ -92,4 +92,4 @@ void Chart::legend(const std::string& fill_class, const std::string& text, bool 
   page_.text({on_the_right ? x - 7.0 : x + 19.0, y}, text, on_the_right ? "text halo end" : "text halo");
 }
 
-}  // namespace planemap::experiments
+}  // namespace planemap::plot

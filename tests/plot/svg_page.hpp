@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace planemap::experiments {
+namespace planemap::plot {
 
 /// Places on a page: pixels, x to the right, y down.
 using Pixel = Eigen::Vector2d;
@@ -62,4 +62,4 @@ class SvgPage {
   std::string body_;
 };
 
-}  // namespace planemap::experiments
+}  // namespace planemap::plot

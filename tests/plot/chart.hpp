@@ -6,7 +6,7 @@
 
 #include "plot/svg_page.hpp"
 
-namespace planemap::experiments {
+namespace planemap::plot {
 
 /// What one axis of a chart shows.
 struct Axis {
@@ -49,4 +49,4 @@ class Chart {
   int legend_rows_ = 0;
 };
 
-}  // namespace planemap::experiments
+}  // namespace planemap::plot

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plot/camera.hpp"
+#include "picture/camera.hpp"
 #include "plot/svg_page.hpp"
 
 namespace planemap::experiments {
@@ -31,7 +31,7 @@ struct PictureFace {
 double best_azimuth_rad(const Eigen::Vector3d& up, double elevation_rad, const std::vector<PictureFace>& faces);
 
 /// Draws what faces the viewer, back to front; faces that turn away are left out, so one looks into rooms.
-void draw_faces(SvgPage& page, const PageFit& place, const Camera& camera, const std::vector<PictureFace>& faces);
+void draw_faces(plot::SvgPage& page, const PageFit& place, const Camera& camera, const std::vector<PictureFace>& faces);
 
 /// All corners of the faces, world frame.
 std::vector<Eigen::Vector3d> corners_of(const std::vector<PictureFace>& faces);

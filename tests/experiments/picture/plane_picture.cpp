@@ -1,4 +1,4 @@
-#include "plot/plane_picture.hpp"
+#include "picture/plane_picture.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,6 +8,8 @@
 #include <numbers>
 
 namespace planemap::experiments {
+
+using namespace plot;
 
 namespace {
 

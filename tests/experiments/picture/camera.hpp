@@ -32,15 +32,15 @@ class Camera {
 /// Places a camera's picture on a page: as large as a box allows, in its middle.
 class PageFit {
  public:
-  PageFit(const Camera& camera, std::span<const Eigen::Vector3d> points_m, const Box& box);
+  PageFit(const Camera& camera, std::span<const Eigen::Vector3d> points_m, const plot::Box& box);
 
-  Pixel operator()(const Eigen::Vector3d& p_m) const;
+  plot::Pixel operator()(const Eigen::Vector3d& p_m) const;
   double pixels_per_m() const { return scale_; }
 
  private:
   const Camera camera_;
   double scale_ = 1.0;
-  Pixel offset_ = Pixel::Zero();
+  plot::Pixel offset_ = plot::Pixel::Zero();
 };
 
 }  // namespace planemap::experiments
