@@ -60,7 +60,7 @@ readonly TEST_PACKAGES=(
   git                 # CI asks it which files are the project's
   iproute2
   jq
-  libbenchmark-dev    # planemap-query-bench
+  libbenchmark-dev    # planemap-query-bench, planemap-stage-bench
   libgmock-dev
   libgtest-dev
   libxml2-utils       # xmllint: is the floor plan well-formed?

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/quantile.hpp"
 #include "contestant.hpp"
 
 namespace planemap::benchmark {
@@ -13,33 +14,45 @@ class BenchReport {
  public:
   void add(const PartTimes& times);
 
-  double median_ms(const std::string& part) const { return quantile_ms(part, 0.5); }
-  double p95_ms(const std::string& part) const { return quantile_ms(part, 0.95); }
+  // Throw std::invalid_argument where there is no such part.
+  double median_ms(const std::string& name) const { return median(part(name).ms); }
+  double p95_ms(const std::string& name) const { return quantile(part(name).ms, 0.95); }
+  double own_median_ms(const std::string& name) const { return median(part(name).own_ms); }
 
-  /// For people: a row a part, with the ratio to the reference and to PCL's VoxelGrid.
+  /// For people: a row a part, with the ratio to the reference and to PCL's VoxelGrid, by own times.
   std::string table() const;
-  /// {"medianMs": {...}, "p95Ms": {...}, "ratios": {...}, "frames": n, "points": n, "machine": {...}}
+  /// What planemap is to keep below, as far as the parts for it were measured.
+  struct Bound {
+    const char* name;   ///< in the JSON
+    const char* words;  ///< for people
+    double ratio;       ///< of medians
+    double own_ratio;   ///< the same of the thread's own times, which a busy machine changes less
+    double most;
+    double aim;
+  };
+  std::vector<Bound> bounds() const;
+  std::string bounds_table() const;
+  /// {"medianMs": {...}, "p95Ms": {...}, "ownMedianMs": {...}, "ratios": {...}, "ownRatios": {...}, "frames": n,
+  /// "pointsPerFrame": n, "machine": {...}, "versions": {...}}
   std::string json(std::size_t frames, std::size_t points) const;
 
  private:
   struct Part {
     std::string name;
     std::vector<double> ms;
+    std::vector<double> own_ms;
   };
   const Part* find(const std::string& name) const;
-  double quantile_ms(const std::string& part, double q) const;
+  const Part& part(const std::string& name) const;
 
   std::vector<Part> parts_;
 };
 
-/// The processor, the compiler with its flags, and the libraries' versions.
-struct Machine {
-  std::string cpu;
-  std::string compiler;
-  std::string flags;
+struct Versions {
+  std::string planemap;
   std::string pcl;
   std::string octomap;
 };
-Machine this_machine();
+Versions library_versions();
 
 }  // namespace planemap::benchmark

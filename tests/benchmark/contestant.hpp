@@ -5,7 +5,6 @@
 #include <planemap/config.hpp>
 #include <planemap/scan.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace planemap::benchmark {
@@ -17,8 +16,14 @@ struct BenchFrame {
   std::vector<float> xyz_world_m;  ///< x0 y0 z0 ... of the pixels whose depth is in range, world frame
 };
 
-/// Milliseconds that one frame took, by part. The first part is the whole; others are named "whole.part".
-using PartTimes = std::vector<std::pair<std::string, double>>;
+/// What one frame took of a part.
+struct PartTime {
+  std::string name;
+  double ms;      ///< by the clock
+  double own_ms;  ///< the thread's own time
+};
+/// The first part is the whole; others are named "whole.part".
+using PartTimes = std::vector<PartTime>;
 
 /// Something that takes frames and whose time is measured.
 class Contestant {
@@ -29,7 +34,8 @@ class Contestant {
 };
 
 /// All of planemap, from the depth image to the published snapshot.
-std::unique_ptr<Contestant> make_planemap(const MapperConfig& config);
+/// @param name  of the whole; its stages are "name.stage"
+std::unique_ptr<Contestant> make_planemap(const std::string& name, const MapperConfig& config);
 /// The floor: depth to sums of a geometric grid, written by hand, with nothing of the method.
 std::unique_ptr<Contestant> make_reference(const SensorConfig& sensor, double cell_size_m);
 std::unique_ptr<Contestant> make_pcl_voxel_grid(double leaf_m);

@@ -8,8 +8,8 @@
 
 #include <limits>
 
+#include "common/stopwatch.hpp"
 #include "contestant.hpp"
-#include "stopwatch.hpp"
 
 namespace planemap::benchmark {
 
@@ -59,7 +59,7 @@ class DownSampling final : public Contestant {
     Cloud thinned;
     const Stopwatch whole;
     filter_.filter(thinned);
-    return {{name_, whole.ms()}};
+    return {{name_, whole.ms(), whole.own_ms()}};
   }
 
  private:
@@ -90,7 +90,7 @@ class OrganizedMultiPlane final : public Contestant {
     segmentation.setInputCloud(cloud);
     std::vector<pcl::PlanarRegion<pcl::PointXYZ>, Eigen::aligned_allocator<pcl::PlanarRegion<pcl::PointXYZ>>> regions;
     segmentation.segmentAndRefine(regions);
-    return {{"pclOrganizedMultiPlane", whole.ms()}};
+    return {{"pclOrganizedMultiPlane", whole.ms(), whole.own_ms()}};
   }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "bench_frames.hpp"
 #include "bench_report.hpp"
+#include "common/machine.hpp"
 #include "contestant.hpp"
 
 namespace planemap::benchmark {
@@ -63,9 +64,15 @@ std::unique_ptr<sources::FrameSource> open_source(const Arguments& arguments) {
 
 std::vector<std::unique_ptr<Contestant>> contestants(const MapperConfig& config, bool alone) {
   std::vector<std::unique_ptr<Contestant>> all;
-  all.push_back(make_planemap(config));
+  all.push_back(make_planemap("planemap", config));
   all.push_back(make_reference(config.sensor, config.grid.cell_size_m));
   if (alone) return all;
+  for (const auto& [name, target] :
+       {std::pair("planemapSse4", SimdTarget::kSse4), std::pair("planemapScalar", SimdTarget::kScalar)}) {
+    MapperConfig other = config;
+    other.core.simd = target;
+    if (is_supported(target) && target != config.core.simd) all.push_back(make_planemap(name, other));
+  }
   all.push_back(make_pcl_voxel_grid(config.grid.cell_size_m));
   all.push_back(make_pcl_approximate_voxel_grid(config.grid.cell_size_m));
   all.push_back(make_pcl_organized_multi_plane(config.sensor));
@@ -93,10 +100,10 @@ void measure(const Arguments& arguments) {
     std::printf("%s\n", report.json(frames.size(), points).c_str());
     return;
   }
-  const Machine machine = this_machine();
-  std::printf("%s; %s %s; PCL %s, OctoMap %s\n%zu frames of %zu points\n\n%s", machine.cpu.c_str(),
-              machine.compiler.c_str(), machine.flags.c_str(), machine.pcl.c_str(), machine.octomap.c_str(),
-              frames.size(), points, report.table().c_str());
+  const Versions versions = library_versions();
+  std::printf("%s\nplanemap %s, PCL %s, OctoMap %s\n%zu frames of %zu points\n\n%s\n%s",
+              text_of(this_machine()).c_str(), versions.planemap.c_str(), versions.pcl.c_str(),
+              versions.octomap.c_str(), frames.size(), points, report.table().c_str(), report.bounds_table().c_str());
 }
 
 int run(int argc, char** argv) {
