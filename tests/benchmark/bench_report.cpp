@@ -34,6 +34,13 @@ void BenchReport::add(const PartTimes& times) {
   }
 }
 
+std::vector<std::string> BenchReport::parts() const {
+  std::vector<std::string> names;
+  names.reserve(parts_.size());
+  for (const Part& part : parts_) names.push_back(part.name);
+  return names;
+}
+
 const BenchReport::Part* BenchReport::find(const std::string& name) const {
   const auto part = std::find_if(parts_.begin(), parts_.end(), [&](const Part& p) { return p.name == name; });
   return part == parts_.end() ? nullptr : &*part;

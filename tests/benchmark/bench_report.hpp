@@ -14,6 +14,7 @@ class BenchReport {
  public:
   void add(const PartTimes& times);
 
+  std::vector<std::string> parts() const;  ///< their names
   // Throw std::invalid_argument where there is no such part.
   double median_ms(const std::string& name) const { return median(part(name).ms); }
   double p95_ms(const std::string& name) const { return quantile(part(name).ms, 0.95); }

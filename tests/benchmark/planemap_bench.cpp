@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <planemap/simulation/simulated_source.hpp>
 #include <planemap/sources/open_folder.hpp>
 
 #include "bench_frames.hpp"
+#include "bench_plot.hpp"
 #include "bench_report.hpp"
 #include "common/machine.hpp"
 #include "contestant.hpp"
@@ -26,6 +28,7 @@ struct Arguments {
   SimdTarget simd = SimdTarget::kAuto;
   bool alone = false;
   bool json = false;
+  std::string svg;
 };
 
 void define_options(CLI::App& app, Arguments& arguments) {
@@ -43,6 +46,7 @@ void define_options(CLI::App& app, Arguments& arguments) {
                                                                             {"neon", SimdTarget::kNeon},
                                                                             {"scalar", SimdTarget::kScalar}}));
   app.add_flag("--alone", arguments.alone, "planemap and the reference loop only");
+  app.add_option("--svg", arguments.svg, "draw it into this file")->type_name("FILE");
   app.add_flag("--json", arguments.json, "one object instead of the table");
   app.footer(
       "Each frame goes through all programs before the next one does, so that a slow moment of the machine hits them "
@@ -96,6 +100,12 @@ void measure(const Arguments& arguments) {
     for (const auto& contestant : all) report.add(contestant->take(frame));
   }
   points /= frames.size();
+  if (!arguments.svg.empty()) {
+    const std::string what = arguments.dataset.empty() ? "a rendered apartment"
+                                                       : std::filesystem::path(arguments.dataset).filename().string();
+    draw_bench(report, std::to_string(frames.size()) + " frames of " + what + "; planemap's bars in its stages",
+               arguments.svg);
+  }
   if (arguments.json) {
     std::printf("%s\n", report.json(frames.size(), points).c_str());
     return;

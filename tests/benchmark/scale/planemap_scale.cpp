@@ -26,8 +26,14 @@ void define_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--scans", arguments.scale.scans, "to map; 20,000 are some 11,000 square metres of floor")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--window", arguments.scale.window, "scans that a row of the table is about")
+  app.add_option("--window", arguments.scale.window,
+                 "scans that a row of the table is about, at least 101 to be compared with a small map")
       ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--minutes", arguments.scale.minutes, "end with the window in which they have passed")
+      ->check(CLI::Range(0.001, 1e9));
+  app.add_option("--shrink", arguments.scale.shrink, "how many times smaller than 640x480 the images are")
+      ->check(CLI::Range(1, 8))
       ->capture_default_str();
   app.add_option("--seed", arguments.scale.seed, "of the building")->capture_default_str();
   app.add_option("--time-lapse", arguments.scale.time_lapse, "how many times faster than a robot the camera goes")

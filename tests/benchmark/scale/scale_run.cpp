@@ -61,6 +61,7 @@ class ScaleRun {
         if (scans_ % config_.window != 0 && scans_ != config_.scans) continue;
         windows.push_back(window());
         on_window(windows.back());
+        if (since_begin_.ms() > 60e3 * config_.minutes) return windows;
       }
       render();
     }
@@ -74,6 +75,10 @@ class ScaleRun {
     scene.seed = config.seed;
     scene.frames = config.scans;
     scene.time_lapse = config.time_lapse;
+    PinholeIntrinsics& k = scene.intrinsics;
+    k.width /= config.shrink;
+    k.height /= config.shrink;
+    for (double* px : {&k.fx, &k.fy, &k.cx, &k.cy}) *px /= config.shrink;
     return scene;
   }
 
@@ -157,6 +162,7 @@ class ScaleRun {
     return window;
   }
 
+  Stopwatch since_begin_;
   ScaleConfig config_;
   simulation::SimulatedSource source_;
   Mapper mapper_;

@@ -12,6 +12,8 @@ struct ScaleConfig {
   std::size_t scans = 20'000;
   std::size_t window = 1000;  ///< scans that a row is about
   std::uint64_t seed = 1;     ///< of the building
+  double minutes = 1e9;       ///< after these no window is begun any more
+  int shrink = 1;             ///< images are 640 / shrink pixels wide
   double time_lapse = 15.0;   ///< of the robot; at 15 it comes by some 0.6 square metres of floor a scan
   MapperConfig mapper;
 };
