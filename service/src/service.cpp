@@ -35,7 +35,8 @@ Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch
       intake_(
           config, counters_, [this](RegisteredScan&& scan) { mapping_.push(std::move(scan)); },
           [](const std::string& text) { spdlog::warn("{}", text); }),
-      server_(config, bus, mapping_, StatusBoard(intake_, mapping_, counters_), counters_) {
+      book_(config.map),
+      server_(config, bus, mapping_, book_, StatusBoard(intake_, mapping_, counters_), counters_) {
   for (const auto& channel : intake_.channels()) subscribe(channel);
   subscribe(request_channel_);
 }

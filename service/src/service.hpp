@@ -4,7 +4,9 @@
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <planemap/expected.hpp>
+#include <planemap/query/snapshot_queries.hpp>
 #include <planemap/snapshot.hpp>
+#include <planemap_lcm/status_t.hpp>
 #include <stop_token>
 #include <string>
 
@@ -13,6 +15,7 @@
 #include "ingest/scan_intake.hpp"
 #include "mapping/mapping_service.hpp"
 #include "serve/lcm/lcm_server.hpp"
+#include "serve/plane_book.hpp"
 
 namespace planemap::service {
 
@@ -37,6 +40,10 @@ class Service {
   void stop();
 
   std::shared_ptr<const MapSnapshot> snapshot() const { return mapping_.snapshot(); }
+  /// The newest snapshot with boundaries, classes and the index for queries; from any thread.
+  std::shared_ptr<const SnapshotQueries> queries() { return book_.open(snapshot()); }
+  /// How the service is; from any thread.
+  planemap_lcm::status_t status() { return server_.status(); }
   CounterValues counters() const { return counters_.values(); }
 
  private:
@@ -48,6 +55,7 @@ class Service {
   Counters counters_;
   MappingService mapping_;
   ScanIntake intake_;
+  PlaneBook book_;
   LcmServer server_;
 };
 

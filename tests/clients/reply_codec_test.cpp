@@ -1,4 +1,4 @@
-#include "reply_codec.hpp"
+#include "lcm/reply_codec.hpp"
 
 #include <gtest/gtest.h>
 

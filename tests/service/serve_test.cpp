@@ -242,7 +242,8 @@ TEST(PlaneBook, KnowsClassesWhereGravityIsKnown) {
   Walls walls;
   walls.look_at(1000);
   const auto snapshot = walls.snapshot();
-  const auto& planes = book.describe(snapshot);
+  const auto queries = book.open(snapshot);
+  const auto planes = queries->planes();
   ASSERT_EQ(planes.size(), 1u);
   EXPECT_EQ(planes[0].plane_class, PlaneClass::kWall);
 }
@@ -251,9 +252,10 @@ TEST(PlaneBook, MakesABoundaryAnewOnlyForAChangedPlane) {
   PlaneBook book(MapConfig{});
   Walls walls;
   walls.look_at(1000);
-  const auto outline = book.describe(walls.snapshot()).at(0).outline;
+  const auto outline = book.open(walls.snapshot())->planes()[0].outline;
   walls.look_at(750, std::numbers::pi / 2);
-  const auto& planes = book.describe(walls.snapshot());
+  const auto queries = book.open(walls.snapshot());
+  const auto planes = queries->planes();
   ASSERT_EQ(planes.size(), 2u);
   EXPECT_EQ(planes[0].outline, outline);
   EXPECT_NE(planes[1].outline, outline);
@@ -394,7 +396,8 @@ TEST_F(RequestAnswererTest, WrongRequestsGetAnErrorThatSaysWhy) {
   const auto revision = static_cast<std::int64_t>(snapshot->revision());
   const Case cases[] = {
       {99, -1, 0, reply_t::STATUS_UNKNOWN_OPERATION,
-       "operation 99 is not known (known: 1 status, 2 snapshot, 3 cells)"},
+       "operation 99 is not known (known: 1 status, 2 snapshot, 3 cells, 4 nearest, 5 rays, 6 region, 7 plane, 8 "
+       "floorplan)"},
       {0, -1, 0, reply_t::STATUS_UNKNOWN_OPERATION, "operation 0 is not known"},
       {2, -2, 0, reply_t::STATUS_BAD_REQUEST, "page is -2"},
       {2, 5, revision, reply_t::STATUS_BAD_REQUEST, "page 5 of 1 (they are counted from 0)"},

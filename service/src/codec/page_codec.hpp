@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <planemap/expected.hpp>
 #include <planemap_lcm/planes_t.hpp>
 #include <planemap_lcm/reply_t.hpp>
 #include <vector>
@@ -18,9 +19,9 @@ Pages encode_pages(planemap_lcm::planes_t header, std::vector<planemap_lcm::plan
                    const std::vector<planemap_lcm::removed_plane_t>& removed, std::size_t page_bytes,
                    double cell_size_m);
 
-/// The same for a reply; a status is on the first page.
-Pages encode_pages(planemap_lcm::reply_t header, std::vector<planemap_lcm::plane_t> planes,
-                   const std::vector<planemap_lcm::cell_t>& cells, std::size_t page_bytes, double cell_size_m);
+/// Splits a whole answer, its lists as long as they may be, into replies of at most page_bytes, in the order of its
+/// lists. Fails, and says what it is, where one item is too large for a page of its own.
+Expected<Pages> encode_pages(planemap_lcm::reply_t answer, std::size_t page_bytes, double cell_size_m);
 
 /// Addresses an encoded reply_t to another request.
 void restamp_reply(Page& page, std::int64_t utime, std::int64_t request_id);

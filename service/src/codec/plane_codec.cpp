@@ -38,16 +38,15 @@ void set_counts(polygon_t& polygon) {
   polygon.n_values = static_cast<std::int32_t>(polygon.uv_m.size());
 }
 
-polygon_t to_wire(const Polygon& polygon) {
-  polygon_t wire{};
-  append_ring(polygon.outer, wire);
-  for (const auto& hole : polygon.holes) append_ring(hole, wire);
-  set_counts(wire);
-  return wire;
+template <class Item>
+std::size_t encoded_bytes(const Item& item) {
+  return static_cast<std::size_t>(item._getEncodedSizeNoHash());
 }
 
-std::size_t encoded_bytes(const plane_t& plane) {
-  return static_cast<std::size_t>(plane._getEncodedSizeNoHash());
+std::size_t encoded_bytes(const std::vector<polygon_t>& polygons) {
+  std::size_t sum = 0;
+  for (const auto& polygon : polygons) sum += encoded_bytes(polygon);
+  return sum;
 }
 
 /// Distance of p from the segment from a to b.
@@ -115,7 +114,35 @@ polygon_t simplified(const polygon_t& polygon, float tolerance_m) {
   return result;
 }
 
+/// Makes polygons coarser, and in the end fewer, until they take at most max_bytes. The largest, which comes first,
+/// does not vanish by being coarser.
+void simplify_to_fit(std::vector<polygon_t>& polygons, std::size_t max_bytes, double cell_size_m) {
+  // Sixteen doublings of half a cell are kilometres; what is still too many pieces then loses the smallest, which come
+  // last.
+  auto tolerance_m = static_cast<float>(0.5 * cell_size_m);
+  for (int step = 0; step < 16 && encoded_bytes(polygons) > max_bytes; ++step, tolerance_m *= 2.0F) {
+    std::vector<polygon_t> coarse;
+    coarse.reserve(polygons.size());
+    for (const auto& polygon : polygons) {
+      auto coarser = simplified(polygon, tolerance_m);
+      if (coarser.n_rings > 0) coarse.push_back(std::move(coarser));
+    }
+    // Its largest piece stays, as it was, before a plane has no boundary at all.
+    if (coarse.empty()) break;
+    polygons = std::move(coarse);
+  }
+  while (!polygons.empty() && encoded_bytes(polygons) > max_bytes) polygons.pop_back();
+}
+
 }  // namespace
+
+polygon_t to_wire(const Polygon& polygon) {
+  polygon_t wire{};
+  append_ring(polygon.outer, wire);
+  for (const auto& hole : polygon.holes) append_ring(hole, wire);
+  set_counts(wire);
+  return wire;
+}
 
 plane_t to_wire(const PlaneRecord& record, const Outline& outline, PlaneClass plane_class) {
   plane_t wire{};
@@ -162,25 +189,33 @@ planemap_lcm::removed_plane_t to_wire(const RemovedPlane& removed) {
 }
 
 bool simplify_to_fit(plane_t& plane, std::size_t max_bytes, double cell_size_m) {
-  if (encoded_bytes(plane) <= max_bytes) return false;
-  // Sixteen doublings of half a cell are kilometres; what is still too many pieces then loses the smallest, which come
-  // last.
-  auto tolerance_m = static_cast<float>(0.5 * cell_size_m);
-  for (int step = 0; step < 16 && encoded_bytes(plane) > max_bytes; ++step, tolerance_m *= 2.0F) {
-    std::vector<polygon_t> polygons;
-    for (const auto& polygon : plane.polygons) {
-      auto coarser = simplified(polygon, tolerance_m);
-      if (coarser.n_rings > 0) polygons.push_back(std::move(coarser));
-    }
-    // Its largest piece stays, as it was, before a plane has no boundary at all.
-    if (polygons.empty()) break;
-    plane.polygons = std::move(polygons);
-    plane.n_polygons = static_cast<std::int32_t>(plane.polygons.size());
-  }
-  while (plane.n_polygons > 0 && encoded_bytes(plane) > max_bytes) {
-    plane.polygons.pop_back();
-    --plane.n_polygons;
-  }
+  const std::size_t bytes = encoded_bytes(plane);
+  if (bytes <= max_bytes) return false;
+  const std::size_t head = bytes - encoded_bytes(plane.polygons);
+  simplify_to_fit(plane.polygons, max_bytes - std::min(max_bytes, head), cell_size_m);
+  plane.n_polygons = static_cast<std::int32_t>(plane.polygons.size());
+  return true;
+}
+
+bool simplify_to_fit(planemap_lcm::region_plane_t& plane, std::size_t max_bytes, double cell_size_m) {
+  const std::size_t bytes = encoded_bytes(plane);
+  if (bytes <= max_bytes) return false;
+  const std::size_t clipped = encoded_bytes(plane.clipped);
+  const std::size_t head = bytes - clipped - encoded_bytes(plane.plane);
+  const std::size_t room = max_bytes - std::min(max_bytes, head);
+  simplify_to_fit(plane.plane, room - std::min(clipped, room / 2), cell_size_m);
+  simplify_to_fit(plane.clipped, room - std::min(room, encoded_bytes(plane.plane)), cell_size_m);
+  plane.n_clipped = static_cast<std::int32_t>(plane.clipped.size());
+  return true;
+}
+
+bool simplify_to_fit(planemap_lcm::plan_polygon_t& polygon, std::size_t max_bytes, double cell_size_m) {
+  const std::size_t bytes = encoded_bytes(polygon);
+  if (bytes <= max_bytes) return false;
+  const std::size_t head = bytes - encoded_bytes(polygon.polygon);
+  std::vector<polygon_t> polygons = {polygon.polygon};
+  simplify_to_fit(polygons, max_bytes - std::min(max_bytes, head), cell_size_m);
+  if (!polygons.empty()) polygon.polygon = std::move(polygons.front());
   return true;
 }
 

@@ -25,6 +25,12 @@ class WireReader {
   std::int16_t i16() { return static_cast<std::int16_t>(big_endian<std::uint16_t>()); }
   std::int32_t i32() { return static_cast<std::int32_t>(big_endian<std::uint32_t>()); }
   std::int64_t i64() { return static_cast<std::int64_t>(big_endian<std::uint64_t>()); }
+  /// The count before a list whose items take at least so many bytes; 0 and not ok() where so many can't follow.
+  std::size_t count(std::size_t least_item_bytes) {
+    const std::int32_t value = i32();
+    ok_ = ok_ && value >= 0 && static_cast<std::size_t>(value) <= rest_.size() / least_item_bytes;
+    return ok_ ? static_cast<std::size_t>(value) : 0;
+  }
   double f64() { return std::bit_cast<double>(big_endian<std::uint64_t>()); }
 
   /// The next `count` bytes where they are; empty and not ok() if there are not so many.

@@ -1,29 +1,31 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <planemap/described_plane.hpp>
+#include <planemap/query/snapshot_queries.hpp>
 #include <planemap/snapshot.hpp>
-#include <vector>
 
 #include "config/service_config.hpp"
 
 namespace planemap::service {
 
-/// Boundaries and classes of a snapshot's planes. A boundary is made anew only when its plane has changed. Not
-/// thread-safe.
+/// What is told of snapshots beside their records: boundaries, classes, and the index that queries go by. Made once for
+/// a snapshot, from the one before: only what has changed is made anew. Deltas and answers share it. Safe from any
+/// thread; who asks for what is being made waits for it.
 class PlaneBook {
  public:
   explicit PlaneBook(const MapConfig& config);
 
-  /// All planes of the snapshot, by id. The result stays as it is until the next call.
-  const std::vector<DescribedPlane>& describe(const std::shared_ptr<const MapSnapshot>& snapshot);
+  /// @param snapshot  not nullptr
+  std::shared_ptr<const SnapshotQueries> open(const std::shared_ptr<const MapSnapshot>& snapshot);
 
  private:
   std::optional<Eigen::Vector3d> gravity_;
-  std::shared_ptr<const MapSnapshot> snapshot_;  ///< that planes_ describes
-  std::vector<DescribedPlane> planes_;
+  std::mutex mutex_;
+  std::deque<std::shared_ptr<const SnapshotQueries>> recent_;  ///< the last that were asked for, the latest in front
 };
 
 }  // namespace planemap::service

@@ -19,7 +19,8 @@ Pages DeltaMaker::make(const std::shared_ptr<const MapSnapshot>& snapshot) {
   if (since == 0) told_classes_.clear();
   std::vector<planemap_lcm::plane_t> planes;
   std::map<PlaneId, PlaneClass> classes;
-  for (const auto& plane : book_.describe(snapshot)) {
+  const auto queries = book_.open(snapshot);
+  for (const auto& plane : queries->planes()) {
     const auto told = told_classes_.find(plane.record->id);
     const bool is_news =
         plane.record->revision > since || told == told_classes_.end() || told->second != plane.plane_class;

@@ -22,28 +22,30 @@ std::int64_t utime_now() {
 
 }  // namespace
 
-LcmServer::LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingService& mapping, StatusBoard board,
-                     Counters& counters)
+LcmServer::LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingService& mapping, PlaneBook& book,
+                     StatusBoard board, Counters& counters)
     : config_(config.publish),
       bus_(bus),
       mapping_(mapping),
       board_(std::move(board)),
       counters_(counters),
-      book_(config.map),
-      deltas_(config, book_),
-      answerer_(config, book_),
+      answerer_(config, book),
+      deltas_(config, book),
       outbox_(config.publish.page_pause_s),
       publish_repeats_(kWarnPeriodS),
       request_repeats_(kWarnPeriodS),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+      answering_([this](const std::stop_token& stop) { run_answers(stop); }),
+      publishing_([this](const std::stop_token& stop) { run(stop); }) {}
 
 LcmServer::~LcmServer() {
   stop();
 }
 
 void LcmServer::stop() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
+  for (auto* thread : {&answering_, &publishing_}) thread->request_stop();
+  for (auto* thread : {&answering_, &publishing_}) {
+    if (thread->joinable()) thread->join();
+  }
 }
 
 void LcmServer::on_request(std::span<const std::uint8_t> message) {
@@ -57,9 +59,8 @@ void LcmServer::on_request(std::span<const std::uint8_t> message) {
       return;
     }
     requests_.push_back(std::move(*request));
-    is_woken_ = true;
   }
-  woken_.notify_one();
+  work_.notify_one();
 }
 
 void LcmServer::reject(const std::string& reason, const std::string& message) {
@@ -76,10 +77,49 @@ void LcmServer::wake() {
   woken_.notify_one();
 }
 
+planemap_lcm::status_t LcmServer::status() {
+  const std::lock_guard lock(board_mutex_);
+  return board_.status(steady_now_s(), utime_now());
+}
+
+void LcmServer::run_answers(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    Request request;
+    {
+      std::unique_lock lock(mutex_);
+      const auto can_work = [this] { return !requests_.empty() && answers_.size() + jobs_ < kMaxJobs; };
+      if (!work_.wait(lock, stop, can_work)) return;
+      request = std::move(requests_.front());
+      requests_.pop_front();
+    }
+    try {
+      answer(request);
+    } catch (const std::exception& e) {
+      // What could not be answered is gone; the service goes on.
+      counters_.add("requests.errors");
+      spdlog::error("a request on {} could not be answered: {}", request.reply_channel, e.what());
+    }
+  }
+}
+
+void LcmServer::answer(const Request& request) {
+  auto reply = answerer_.answer(
+      request, mapping_.snapshot(), [this] { return status(); }, utime_now());
+  counters_.add(reply.error.empty() ? "requests.answered" : "requests.answered_with_error");
+  if (!reply.error.empty())
+    spdlog::debug("request {} on {}: {}", request.request_id, request.reply_channel, reply.error);
+  {
+    const std::lock_guard lock(mutex_);
+    answers_.push_back(std::move(reply));
+    is_woken_ = true;
+  }
+  woken_.notify_one();
+}
+
 void LcmServer::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
-      take_requests();
+      take_answers();
       publish_due(steady_now_s());
     } catch (const std::exception& e) {
       // What could not be answered is gone; the service goes on.
@@ -105,31 +145,25 @@ double LcmServer::next_due_s() const {
   return due_s;
 }
 
-void LcmServer::take_requests() {
-  while (outbox_.jobs() < kMaxJobs) {
-    Request request;
-    {
-      const std::lock_guard lock(mutex_);
-      if (requests_.empty()) return;
-      request = std::move(requests_.front());
-      requests_.pop_front();
-    }
-    auto reply = answerer_.answer(
-        request, mapping_.snapshot(), [this] { return board_.status(steady_now_s(), utime_now()); }, utime_now());
-    counters_.add(reply.error.empty() ? "requests.answered" : "requests.answered_with_error");
-    if (!reply.error.empty())
-      spdlog::debug("request {} on {}: {}", request.request_id, request.reply_channel, reply.error);
-    outbox_.add(std::move(reply));
+/// The answers that are there go into the outbox, and whoever answers learns how much room there is.
+void LcmServer::take_answers() {
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& reply : answers_) outbox_.add(std::move(reply));
+    answers_.clear();
+    jobs_ = outbox_.jobs();
   }
+  work_.notify_one();
 }
 
 void LcmServer::publish_due(double now_s) {
   if (now_s >= status_due_s_) {
     status_due_s_ = now_s + config_.status_period_s;
-    publish(config_.status_channel, encode(board_.status(now_s, utime_now())));
+    publish(config_.status_channel, encode(status()));
   }
   if (now_s >= log_due_s_) {
     log_due_s_ = now_s + kLogPeriodS;
+    const std::lock_guard lock(board_mutex_);
     board_.log(now_s);
   }
   if (now_s >= delta_due_s_ && outbox_.jobs() < kMaxJobs && has_delta()) {

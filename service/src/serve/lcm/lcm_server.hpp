@@ -5,6 +5,7 @@
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
 #include <mutex>
+#include <planemap_lcm/status_t.hpp>
 #include <span>
 #include <string>
 #include <thread>
@@ -23,11 +24,13 @@
 namespace planemap::service {
 
 /// Everything that goes out over LCM: status, deltas, replies; all from one thread of its own, as LCM's providers ask
-/// for.
+/// for. Answers are worked out on another one: a floor plan of a large building takes seconds, in which status and
+/// deltas go on.
 class LcmServer {
  public:
-  LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingService& mapping, StatusBoard board,
-            Counters& counters);
+  /// @param book  shared with whoever else answers; outlives the server
+  LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingService& mapping, PlaneBook& book,
+            StatusBoard board, Counters& counters);
   ~LcmServer();
   LcmServer(const LcmServer&) = delete;
   LcmServer& operator=(const LcmServer&) = delete;
@@ -36,14 +39,18 @@ class LcmServer {
   void on_request(std::span<const std::uint8_t> message);
   /// There is a new snapshot. Returns at once; from any thread.
   void wake();
-  /// Ends the thread. Called by the destructor, too.
+  /// The status as it would be told now; from any thread.
+  planemap_lcm::status_t status();
+  /// Ends the threads. Called by the destructor, too.
   void stop();
 
  private:
   void run(const std::stop_token& stop);
+  void run_answers(const std::stop_token& stop);
+  void answer(const Request& request);
   double next_due_s() const;
   bool has_delta() const;
-  void take_requests();
+  void take_answers();
   void publish_due(double now_s);
   void publish(const std::string& channel, const Page& bytes);
   void reject(const std::string& reason, const std::string& message);
@@ -51,13 +58,13 @@ class LcmServer {
   PublishConfig config_;
   lcm::LCM& bus_;
   const MappingService& mapping_;
+  std::mutex board_mutex_;
   StatusBoard board_;
   Counters& counters_;
+  RequestAnswerer answerer_;  ///< of the answering thread alone
 
   // Of the publishing thread alone.
-  PlaneBook book_;
   DeltaMaker deltas_;
-  RequestAnswerer answerer_;
   Outbox outbox_;
   RepeatGuard publish_repeats_;
   double status_due_s_ = 0.0;
@@ -71,9 +78,13 @@ class LcmServer {
   std::mutex mutex_;  ///< of what follows
   std::condition_variable_any woken_;
   bool is_woken_ = false;
+  std::condition_variable_any work_;  ///< there is a request, or room for its answer
   std::deque<Request> requests_;
+  std::deque<Reply> answers_;  ///< on their way to the outbox
+  std::size_t jobs_ = 0;       ///< in the outbox
 
-  std::jthread thread_;  ///< last: ends before what it uses
+  std::jthread answering_;  ///< last, these two: they end before what they use
+  std::jthread publishing_;
 };
 
 }  // namespace planemap::service

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <planemap_lcm/request_t.hpp>
 #include <utility>
-#include <vector>
-
-#include "codec/plane_codec.hpp"
 
 namespace planemap::service {
 namespace {
@@ -15,11 +12,10 @@ namespace {
 using planemap_lcm::reply_t;
 using planemap_lcm::request_t;
 
-/// More than this is not sent over a datagram bus: some five million cells.
-constexpr std::size_t kMaxReplyBytes = std::size_t{256} << 20;
-
-bool is_map_operation(std::int16_t operation) {
-  return operation == request_t::OPERATION_SNAPSHOT || operation == request_t::OPERATION_CELLS;
+/// Whether a kept reply is to what is asked now.
+template <class Kept>
+bool is_same_question(const Kept& kept, const Request& request) {
+  return kept.operation == request.operation && kept.argument_bytes == request.argument_bytes;
 }
 
 Reply all_pages(const Request& request, std::shared_ptr<const Pages> pages) {
@@ -44,24 +40,33 @@ Reply RequestAnswerer::answer(const Request& request, const std::shared_ptr<cons
   header.revision = static_cast<std::int64_t>(snapshot->revision());
   header.status = reply_t::STATUS_OK;
   header.frame = frame_;
-  if (request.operation != request_t::OPERATION_STATUS && !is_map_operation(request.operation)) {
-    return error(request, header, reply_t::STATUS_UNKNOWN_OPERATION,
-                 fmt::format("operation {} is not known (known: {} status, {} snapshot, {} cells)", request.operation,
-                             request_t::OPERATION_STATUS, request_t::OPERATION_SNAPSHOT, request_t::OPERATION_CELLS));
+  const bool is_status = request.operation == request_t::OPERATION_STATUS;
+  if (!is_status && !is_map_operation(request.operation)) {
+    return error(request, header,
+                 {reply_t::STATUS_UNKNOWN_OPERATION,
+                  fmt::format("operation {} is not known (known: {})", request.operation, known_operations())});
   }
   if (request.page < -1) {
-    return error(request, header, reply_t::STATUS_BAD_REQUEST,
-                 fmt::format("page is {} (allowed: -1 for all, or the number of a lost page)", request.page));
+    return error(request, header,
+                 {reply_t::STATUS_BAD_REQUEST,
+                  fmt::format("page is {} (allowed: -1 for all, or the number of a lost page)", request.page)});
   }
-  if (request.operation == request_t::OPERATION_STATUS) {
-    if (request.page > 0) {
-      return error(request, header, reply_t::STATUS_BAD_REQUEST,
-                   fmt::format("page {} of 1: a status is one page", request.page));
-    }
-    header.service_status.push_back(status());
-    return all_pages(request, std::make_shared<const Pages>(encode_pages(header, {}, {}, page_bytes_, 0.0)));
-  }
+  if (auto refusal = check_arguments(request)) return error(request, header, std::move(*refusal));
+  if (is_status) return status_reply(request, std::move(header), status);
   return request.page >= 0 ? lost_page(request, header) : whole_answer(request, std::move(header), snapshot);
+}
+
+Reply RequestAnswerer::status_reply(const Request& request, reply_t header,
+                                    const std::function<planemap_lcm::status_t()>& status) const {
+  if (request.page > 0) {
+    return error(request, header,
+                 {reply_t::STATUS_BAD_REQUEST, fmt::format("page {} of 1: a status is one page", request.page)});
+  }
+  header.service_status.push_back(status());
+  auto pages = encode_pages(header, page_bytes_, 0.0);
+  header.service_status.clear();
+  if (!pages) return error(request, header, {reply_t::STATUS_TOO_LARGE, pages.error().message});
+  return all_pages(request, std::make_shared<const Pages>(std::move(*pages)));
 }
 
 Reply RequestAnswerer::whole_answer(const Request& request, reply_t header,
@@ -71,11 +76,8 @@ Reply RequestAnswerer::whole_answer(const Request& request, reply_t header,
   header.epoch = static_cast<std::int64_t>(snapshot->epoch());
   header.revision = static_cast<std::int64_t>(snapshot->revision());
   auto pages = pages_of(request, header, snapshot);
-  if (!pages) {
-    return error(request, header, reply_t::STATUS_TOO_LARGE,
-                 fmt::format("the map's {} cells are more than {} MiB", snapshot->cell_count(), kMaxReplyBytes >> 20));
-  }
-  return all_pages(request, std::move(pages));
+  if (!pages) return error(request, header, std::move(pages.error()));
+  return all_pages(request, std::move(*pages));
 }
 
 /// The newest one, or that of the revision which the request names; nullptr if it is not kept any more. Snapshots of
@@ -97,59 +99,60 @@ std::shared_ptr<const MapSnapshot> RequestAnswerer::snapshot_for(
 }
 
 Reply RequestAnswerer::gone(const Request& request, const reply_t& header) const {
-  return error(
-      request, header, reply_t::STATUS_GONE,
-      fmt::format("the map of epoch {} revision {} is not kept any more: ask anew", request.epoch, request.revision));
+  return error(request, header,
+               {reply_t::STATUS_GONE, fmt::format("the map of epoch {} revision {} is not kept any more: ask anew",
+                                                  request.epoch, request.revision)});
 }
 
 Reply RequestAnswerer::lost_page(const Request& request, const reply_t& header) const {
   const auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
-    return k.channel == request.reply_channel && k.operation == request.operation && k.epoch == request.epoch &&
+    return k.channel == request.reply_channel && is_same_question(k, request) && k.epoch == request.epoch &&
            k.revision == request.revision;
   });
   if (kept == kept_.end()) {
-    return error(request, header, reply_t::STATUS_GONE,
-                 fmt::format("the reply of epoch {} revision {} on {} is not kept any more: ask for all pages",
-                             request.epoch, request.revision, request.reply_channel));
+    return error(request, header,
+                 {reply_t::STATUS_GONE,
+                  fmt::format("the reply of epoch {} revision {} on {} is not kept any more: ask for all pages",
+                              request.epoch, request.revision, request.reply_channel)});
   }
   const auto page = static_cast<std::size_t>(request.page);
   if (page >= kept->pages->size()) {
-    return error(request, header, reply_t::STATUS_BAD_REQUEST,
-                 fmt::format("page {} of {} (they are counted from 0)", page, kept->pages->size()));
+    return error(request, header,
+                 {reply_t::STATUS_BAD_REQUEST,
+                  fmt::format("page {} of {} (they are counted from 0)", page, kept->pages->size())});
   }
   return Reply{request.reply_channel, request.request_id, kept->pages, page, page + 1, {}};
 }
 
-Reply RequestAnswerer::error(const Request& request, reply_t header, std::int8_t code, std::string message) const {
-  header.status = code;
-  header.error = message;
-  auto reply =
-      all_pages(request, std::make_shared<const Pages>(encode_pages(std::move(header), {}, {}, page_bytes_, 0.0)));
-  reply.error = std::move(message);
+Reply RequestAnswerer::error(const Request& request, reply_t header, Refusal refusal) const {
+  header.status = refusal.status;
+  header.error = refusal.message;
+  header.page = 0;
+  header.page_count = 1;
+  auto reply = all_pages(request, std::make_shared<const Pages>(Pages{encode(header)}));
+  reply.error = std::move(refusal.message);
   return reply;
 }
 
-std::shared_ptr<const Pages> RequestAnswerer::pages_of(const Request& request, const reply_t& header,
-                                                       const std::shared_ptr<const MapSnapshot>& snapshot) {
-  const auto same = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
-    return k.operation == request.operation && k.snapshot == snapshot;
-  });
+tl::expected<std::shared_ptr<const Pages>, Refusal> RequestAnswerer::pages_of(
+    const Request& request, reply_t header, const std::shared_ptr<const MapSnapshot>& snapshot) {
+  const auto same = std::find_if(kept_.begin(), kept_.end(),
+                                 [&](const Kept& k) { return is_same_question(k, request) && k.snapshot == snapshot; });
   std::shared_ptr<const Pages> pages;
   if (same != kept_.end()) {
     pages = same->pages;
   } else {
-    std::vector<planemap_lcm::plane_t> planes;
-    std::vector<planemap_lcm::cell_t> cells;
-    if (request.operation == request_t::OPERATION_SNAPSHOT) {
-      for (const auto& plane : book_.describe(snapshot)) {
-        planes.push_back(to_wire(*plane.record, *plane.outline, plane.plane_class));
-      }
-    } else {
-      if (snapshot->cell_count() > kMaxReplyBytes / sizeof(planemap_lcm::cell_t)) return nullptr;
-      snapshot->for_each_cell([&](const CellView& cell) { cells.push_back(to_wire(cell)); });
+    if (auto refusal = answer_from(*book_.open(snapshot), request, header)) {
+      return tl::make_unexpected(std::move(*refusal));
     }
-    pages = std::make_shared<const Pages>(
-        encode_pages(header, std::move(planes), cells, page_bytes_, snapshot->cell_size_m()));
+    auto made = encode_pages(std::move(header), page_bytes_, snapshot->cell_size_m());
+    if (!made) return tl::make_unexpected(Refusal{reply_t::STATUS_TOO_LARGE, made.error().message});
+    if (made->size() * page_bytes_ > kMaxReplyBytes) {
+      return tl::make_unexpected(
+          Refusal{reply_t::STATUS_TOO_LARGE,
+                  fmt::format("the answer is {} pages, more than {} MiB", made->size(), kMaxReplyBytes >> 20)});
+    }
+    pages = std::make_shared<const Pages>(std::move(*made));
   }
   keep(request, snapshot, pages);
   return pages;
@@ -162,8 +165,9 @@ void RequestAnswerer::keep(const Request& request, const std::shared_ptr<const M
     return k.channel == request.reply_channel && k.operation == request.operation;
   });
   if (old != kept_.end()) kept_.erase(old);
-  kept_.push_front(Kept{request.reply_channel, request.operation, static_cast<std::int64_t>(snapshot->epoch()),
-                        static_cast<std::int64_t>(snapshot->revision()), snapshot, std::move(pages)});
+  kept_.push_front(Kept{request.reply_channel, request.operation, request.argument_bytes,
+                        static_cast<std::int64_t>(snapshot->epoch()), static_cast<std::int64_t>(snapshot->revision()),
+                        snapshot, std::move(pages)});
   if (kept_.size() > kept_replies_) kept_.pop_back();
 }
 

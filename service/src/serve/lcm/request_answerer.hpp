@@ -7,9 +7,11 @@
 #include <planemap/snapshot.hpp>
 #include <planemap_lcm/status_t.hpp>
 #include <string>
+#include <vector>
 
 #include "codec/page_codec.hpp"
 #include "codec/request_codec.hpp"
+#include "serve/lcm/map_answers.hpp"
 #include "serve/plane_book.hpp"
 
 namespace planemap::service {
@@ -42,21 +44,24 @@ class RequestAnswerer {
   struct Kept {
     std::string channel;
     std::int16_t operation = 0;
+    std::vector<std::uint8_t> argument_bytes;
     std::int64_t epoch = 0;
     std::int64_t revision = 0;
     std::shared_ptr<const MapSnapshot> snapshot;
     std::shared_ptr<const Pages> pages;
   };
 
+  Reply status_reply(const Request& request, planemap_lcm::reply_t header,
+                     const std::function<planemap_lcm::status_t()>& status) const;
   Reply whole_answer(const Request& request, planemap_lcm::reply_t header,
                      const std::shared_ptr<const MapSnapshot>& newest);
   std::shared_ptr<const MapSnapshot> snapshot_for(const Request& request,
                                                   const std::shared_ptr<const MapSnapshot>& newest) const;
   Reply gone(const Request& request, const planemap_lcm::reply_t& header) const;
   Reply lost_page(const Request& request, const planemap_lcm::reply_t& header) const;
-  Reply error(const Request& request, planemap_lcm::reply_t header, std::int8_t code, std::string message) const;
-  std::shared_ptr<const Pages> pages_of(const Request& request, const planemap_lcm::reply_t& header,
-                                        const std::shared_ptr<const MapSnapshot>& snapshot);
+  Reply error(const Request& request, planemap_lcm::reply_t header, Refusal refusal) const;
+  tl::expected<std::shared_ptr<const Pages>, Refusal> pages_of(const Request& request, planemap_lcm::reply_t header,
+                                                               const std::shared_ptr<const MapSnapshot>& snapshot);
   void keep(const Request& request, const std::shared_ptr<const MapSnapshot>& snapshot,
             std::shared_ptr<const Pages> pages);
 

@@ -2,7 +2,8 @@
 
 #include <chrono>
 #include <memory>
-#include <planemap/client/map_types.hpp>
+#include <planemap/client/map_client.hpp>
+#include <span>
 #include <string>
 
 namespace lcm {
@@ -11,11 +12,19 @@ class LCM;
 
 namespace planemap::client {
 
+class LcmRequester;
+class WireQueries;
+
 /// Where the service is listening, and how patient to be with it.
 struct LcmClientOptions {
   std::string request_channel = "PLANEMAP_REQUEST";
+  std::string delta_channel = "PLANEMAP_DELTA";
+  std::string status_channel = "PLANEMAP_STATUS";
   std::chrono::milliseconds ask_again_after{1000};  ///< nothing came: the whole request is sent again
   std::chrono::milliseconds lost_page_after{200};   ///< no page for so long: the missing ones are asked for by number
+  /// A watch: the status tells of a revision, and so long no delta to it came: the whole map is asked for.
+  std::chrono::milliseconds lost_delta_after{1000};
+  std::chrono::milliseconds silent_after{5000};  ///< a watch: nothing was heard for so long: the service is not there
 };
 
 /// The URL that is used where none is given: the environment's LCM_DEFAULT_URL, else udpm://239.255.76.67:7667?ttl=0.
@@ -24,7 +33,7 @@ std::string default_lcm_url();
 /// Asks a planemap service over LCM. An answer comes as pages, each a message; lost ones are asked for again by number
 /// until the answer is whole or the timeout over. Every call blocks up to its timeout. Not thread-safe: one thread uses
 /// it.
-class LcmMapClient {
+class LcmMapClient final : public MapClient {
  public:
   /// Opens LCM; a receive buffer that holds a whole answer is added to udpm URLs that name none.
   /// Fails (kNoNetwork) if it can't be opened; the error says what to do.
@@ -32,26 +41,29 @@ class LcmMapClient {
 
   /// Uses a bus of the caller's, which nobody else may handle during calls and which must outlive the client.
   explicit LcmMapClient(std::shared_ptr<lcm::LCM> bus, const LcmClientOptions& options = {});
-  ~LcmMapClient();
-  LcmMapClient(const LcmMapClient&) = delete;
-  LcmMapClient& operator=(const LcmMapClient&) = delete;
+  ~LcmMapClient() override;
 
-  Expected<Status> status(std::chrono::milliseconds timeout);
-  /// All planes with their boundaries.
-  Expected<Map> snapshot(std::chrono::milliseconds timeout);
-  /// All dense cells. While mapping goes on their revision is a later one than that of a snapshot before: whole_map()
-  /// gives both of one revision.
-  Expected<Map> cells(std::chrono::milliseconds timeout);
-  /// All planes and the dense cells of the same revision. Where the service does not keep the planes' revision until it
-  /// is asked for the cells, both are asked for anew.
-  Expected<Map> whole_map(std::chrono::milliseconds timeout);
+  Expected<Status> status(Timeout timeout) override;
+  Expected<Map> snapshot(Timeout timeout) override;
+  Expected<Map> cells(Timeout timeout) override;
+  /// Where the service does not keep the planes' revision until it is asked for the cells, both are asked for anew.
+  Expected<Map> whole_map(Timeout timeout) override;
+  /// More points than a request may bring go in several, all to the same revision; the same for rays.
+  Expected<NearestAnswer> nearest(std::span<const QueryPoint> points, const NearestOptions& options,
+                                  Timeout timeout) override;
+  Expected<CastAnswer> cast(std::span<const Ray> rays, const CastOptions& options, Timeout timeout) override;
+  Expected<RegionAnswer> region(const RegionQuery& query, Timeout timeout) override;
+  Expected<PlaneAnswer> plane(std::int64_t id, Timeout timeout) override;
+  Expected<FloorplanAnswer> floorplan(const FloorplanQuery& query, Timeout timeout) override;
+  /// By the deltas, and by snapshots where those were lost.
+  std::unique_ptr<MapWatch> watch() override;
 
   /// Messages on the reply channel that could not be read, so far.
   std::size_t malformed_count() const;
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<LcmRequester> requester_;
+  std::unique_ptr<WireQueries> queries_;
 };
 
 }  // namespace planemap::client

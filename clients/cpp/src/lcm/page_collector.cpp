@@ -1,4 +1,4 @@
-#include "page_collector.hpp"
+#include "lcm/page_collector.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,62 @@
+#include "query_checks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace planemap::client {
+namespace {
+
+constexpr double kSymmetryTolerance = 1e-9;  // of the greatest element
+
+tl::unexpected<Error> refused(std::string message) {
+  return tl::make_unexpected(Error{Error::Kind::kRefused, std::move(message)});
+}
+
+std::string text_of(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", number);
+  return text.data();
+}
+
+bool is_symmetric(const std::array<double, 9>& c) {
+  double greatest = 0.0;
+  for (const double element : c) greatest = std::max(greatest, std::abs(element));
+  const double asymmetry = std::max({std::abs(c[1] - c[3]), std::abs(c[2] - c[6]), std::abs(c[5] - c[7])});
+  return !(asymmetry > kSymmetryTolerance * greatest);
+}
+
+}  // namespace
+
+Expected<void> check_filter(const PlaneFilter& filter) {
+  if (!(filter.max_normal_deviation_rad > 0.0)) {
+    return refused("max_normal_deviation_rad: must be greater than 0, is " + text_of(filter.max_normal_deviation_rad));
+  }
+  return {};
+}
+
+Expected<void> check_query(std::span<const QueryPoint> points, const NearestOptions& options) {
+  if (!(options.max_distance_m > 0.0)) {
+    return refused("max_distance_m: must be greater than 0, is " + text_of(options.max_distance_m));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!is_symmetric(points[i].covariance_m2)) {
+      return refused("points[" + std::to_string(i) + "].covariance_m2: is not symmetric");
+    }
+  }
+  return check_filter(options.filter);
+}
+
+Expected<void> check_query(std::span<const Ray> rays, const CastOptions& options) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!(rays[i].max_range_m > 0.0)) {
+      return refused("rays[" + std::to_string(i) + "].max_range_m: must be greater than 0, is " +
+                     text_of(rays[i].max_range_m));
+    }
+  }
+  return check_filter(options.filter);
+}
+
+}  // namespace planemap::client
