@@ -63,7 +63,8 @@ void write_wall_log(const std::string& path, int scans) {
 }
 
 TEST_F(CliTest, HelpAndVersionAreThereForEveryCommand) {
-  for (const char* command : {"", "build", "status", "snapshot", "export"}) {
+  for (const char* command :
+       {"", "build", "status", "snapshot", "export", "nearest", "ray", "region", "plane", "floorplan", "watch"}) {
     const Finished outcome = planemap(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_NE(outcome.out.find("--help"), std::string::npos) << command;

@@ -434,6 +434,127 @@ TEST_F(RequestAnswererTest, OldRepliesAreForgottenAndOthersStay) {
   EXPECT_EQ(status_of_lost_page("PLANEMAP_REPLY_C"), reply_t::STATUS_OK);
 }
 
+/// A request for the planes nearest to so many points.
+Request nearest_request(std::int32_t points, std::int32_t count, const std::string& channel = "PLANEMAP_REPLY_A") {
+  Request request;
+  request.request_id = 7;
+  request.reply_channel = channel;
+  request.operation = request_t::OPERATION_NEAREST;
+  planemap_lcm::nearest_query_t query{};
+  query.count = count;
+  query.points.resize(static_cast<std::size_t>(points));
+  query.n_points = points;
+  request.arguments.nearest = {query};
+  request.arguments.n_nearest = 1;
+  request.argument_bytes = {static_cast<std::uint8_t>(points), static_cast<std::uint8_t>(count)};
+  return request;
+}
+
+TEST_F(RequestAnswererTest, LostPagesOfAQueryAreThoseOfTheSameQuestion) {
+  const auto snapshot = walls_.snapshot();
+  const auto reply = ask(nearest_request(100, 1), snapshot);
+  ASSERT_GT(reply.end, 1u) << "several pages";
+  std::size_t near = 0;
+  for (const auto& page : decoded<reply_t>(*reply.pages)) near += page.near_planes.size();
+  EXPECT_EQ(near, 100u);
+  auto again = nearest_request(100, 1);
+  again.page = 1;
+  again.epoch = 9;
+  again.revision = static_cast<std::int64_t>(snapshot->revision());
+  walls_.look_at(750, 1.5);
+  const auto lost = ask(again, walls_.snapshot());
+  ASSERT_EQ(lost.begin, 1u);
+  EXPECT_EQ((*lost.pages)[1], (*reply.pages)[1]);
+  auto other = nearest_request(50, 1);  // another question: never a page of that answer
+  other.page = 1;
+  other.epoch = again.epoch;
+  other.revision = again.revision;
+  EXPECT_EQ(only_page(ask(other, snapshot)).status, reply_t::STATUS_GONE);
+}
+
+TEST_F(RequestAnswererTest, TheSameQuestionTwiceGetsTheSameAnswer) {
+  const auto snapshot = walls_.snapshot();
+  const auto first = ask(nearest_request(3, 1), snapshot);
+  EXPECT_EQ(ask(nearest_request(3, 1), snapshot).pages, first.pages) << "made once";
+  EXPECT_EQ(ask(nearest_request(3, 1, "PLANEMAP_REPLY_B"), snapshot).pages, first.pages);
+  EXPECT_NE(ask(nearest_request(4, 1), snapshot).pages, first.pages);
+}
+
+TEST_F(RequestAnswererTest, WrongArgumentsGetAnErrorThatSaysWhy) {
+  const auto snapshot = walls_.snapshot();
+  const auto expect_bad = [&](const Request& request, const char* why) {
+    const reply_t page = only_page(ask(request, snapshot));
+    EXPECT_EQ(page.status, reply_t::STATUS_BAD_REQUEST) << why;
+    EXPECT_NE(page.error.find(why), std::string::npos) << page.error;
+  };
+  expect_bad(request_for(request_t::OPERATION_NEAREST), "nearest: operation 4 (nearest) takes one there, there are 0");
+  auto request = request_for(request_t::OPERATION_RAYS);
+  request.arguments.rays.resize(2);
+  expect_bad(request, "rays: operation 5 (rays) takes one there, there are 2");
+  request = request_for(request_t::OPERATION_FLOORPLAN);
+  request.arguments.floorplan.resize(2);
+  expect_bad(request, "floorplan: operation 8 (floorplan) takes one or none there, there are 2");
+  request = request_for(request_t::OPERATION_STATUS);
+  request.arguments.plane.resize(1);
+  expect_bad(request, "plane: operation 1 (status) takes none there, there are 1");
+  request = request_for(request_t::OPERATION_SNAPSHOT);
+  request.arguments.filter.min_area_m2 = 1.0;
+  expect_bad(request, "filter: operation 2 (snapshot) takes none; a region without limits does");
+  request = request_for(request_t::OPERATION_REGION);
+  request.arguments.region.resize(1);
+  expect_bad(request, "shape: 0 is none (1 box, 2 oriented box, 3 sphere, 4 frustum, 5 cylinder)");
+  expect_bad(nearest_request(701, 1), "points: there must be 1 to 700 in a request, there are 701");
+  expect_bad(nearest_request(1, 1001), "count: must be 1 to 1000, is 1001");
+  request = nearest_request(1, 1);
+  request.arguments.filter.classes.resize(17);
+  expect_bad(request, "classes: there may be 16, there are 17");
+}
+
+TEST(PageCodec, AnItemThatFitsNoPageIsSaid) {
+  reply_t answer{};
+  planemap_lcm::plane_lookup_t lookup{};
+  lookup.lineage.resize(1000, 5);
+  lookup.n_lineage = 1000;
+  answer.lookups = {lookup};
+  const auto pages = encode_pages(answer, 4096, 0.08);
+  ASSERT_FALSE(pages);
+  EXPECT_EQ(pages.error().message, "the plane's lineage and links does not fit on a page (publish.page_bytes)");
+  EXPECT_TRUE(encode_pages(answer, 60000, 0.08));
+}
+
+TEST(PageCodec, RegionsAndPlansAreMadeCoarserToFit) {
+  reply_t answer{};
+  planemap_lcm::region_plane_t plane{};
+  plane.plane = round_plane(20000);
+  plane.clipped = plane.plane.polygons;
+  plane.n_clipped = 1;
+  answer.region_planes = {plane};
+  planemap_lcm::plan_polygon_t polygon{};
+  polygon.kind = planemap_lcm::plan_polygon_t::KIND_FLOOR;
+  polygon.polygon = plane.clipped[0];
+  answer.plan_polygons = {polygon};
+  const auto pages = encode_pages(answer, 8192, 0.08);
+  ASSERT_TRUE(pages) << pages.error().message;
+  int planes = 0;
+  int polygons = 0;
+  for (const auto& page : *pages) EXPECT_LE(page.size(), 8192u);
+  for (const auto& page : decoded<reply_t>(*pages)) {
+    for (const auto& found : page.region_planes) {
+      ++planes;
+      ASSERT_EQ(found.n_clipped, 1);
+      EXPECT_NEAR(area_of(found.clipped[0]), std::numbers::pi * 900.0, 20.0);
+      ASSERT_EQ(found.plane.n_polygons, 1);
+      EXPECT_NEAR(area_of(found.plane.polygons[0]), std::numbers::pi * 900.0, 20.0);
+    }
+    for (const auto& found : page.plan_polygons) {
+      ++polygons;
+      EXPECT_NEAR(area_of(found.polygon), std::numbers::pi * 900.0, 20.0);
+    }
+  }
+  EXPECT_EQ(planes, 1);
+  EXPECT_EQ(polygons, 1);
+}
+
 TEST(RequestCodec, TakesOnlyReplyChannelsOfItsKind) {
   const auto reason_of = [](const std::string& channel) {
     auto message = request_message(1);

@@ -19,6 +19,12 @@ void add_build_command(CLI::App& app, Action& action);
 void add_status_command(CLI::App& app, Action& action);
 void add_snapshot_command(CLI::App& app, Action& action);
 void add_export_command(CLI::App& app, Action& action);
+void add_nearest_command(CLI::App& app, Action& action);
+void add_ray_command(CLI::App& app, Action& action);
+void add_region_command(CLI::App& app, Action& action);
+void add_plane_command(CLI::App& app, Action& action);
+void add_floorplan_command(CLI::App& app, Action& action);
+void add_watch_command(CLI::App& app, Action& action);
 
 /// Says on stderr what went wrong: "planemap: ...".
 ExitCode complain(ExitCode code, const std::string& message);

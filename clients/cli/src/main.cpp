@@ -33,6 +33,12 @@ ExitCode run(int argc, char** argv) {
   add_status_command(app, action);
   add_snapshot_command(app, action);
   add_export_command(app, action);
+  add_nearest_command(app, action);
+  add_ray_command(app, action);
+  add_region_command(app, action);
+  add_plane_command(app, action);
+  add_floorplan_command(app, action);
+  add_watch_command(app, action);
   if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
     return complain(ExitCode::kWrongUse, unknown);
   }

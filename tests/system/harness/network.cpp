@@ -63,6 +63,16 @@ void remove_multicast_route() {
   run("ip route del 224.0.0.0/4 dev lo");
 }
 
+void lose_datagrams(int percent) {
+  run("nft 'add table inet loss; delete table inet loss'");
+  if (percent == 0) return;
+  const std::string rule = "udp dport 7667 numgen random mod 100 < " + std::to_string(percent) + " drop";
+  run(("nft 'add table inet loss; add chain inet loss in { type filter hook input priority 0; }; "
+       "add rule inet loss in " +
+       rule + "'")
+          .c_str());
+}
+
 long greatest_receive_buffer() {
   return g_greatest_receive_buffer;
 }

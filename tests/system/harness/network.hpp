@@ -13,6 +13,11 @@ std::string enter_own_network();
 void add_multicast_route();
 void remove_multicast_route();
 
+/// Loses datagrams to LCM's port at random in that namespace, until it is set anew. Throws std::runtime_error if `nft`
+/// fails.
+/// @param percent  0 to 100; 0: none
+void lose_datagrams(int percent);
+
 /// LCM in that namespace, with a receive buffer for scans.
 extern const char* const kLcmUrl;
 

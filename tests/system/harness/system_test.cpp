@@ -57,6 +57,11 @@ void SystemTest::start_daemon(const std::vector<std::string>& arguments, const s
   ASSERT_TRUE(heard && daemon_->running()) << "planemapd did not come up";
 }
 
+void SystemTest::stop_daemon() {
+  daemon_.reset();
+  bus_ = std::make_unique<Bus>();
+}
+
 std::unique_ptr<Process> SystemTest::start(const std::string& name, const std::vector<std::string>& arguments) const {
   return std::make_unique<Process>(arguments, scratch_ / (name + ".log"));
 }

@@ -34,6 +34,9 @@ class SystemTest : public testing::Test {
   /// @param before     what runs planemapd, for instance taskset with its arguments
   void start_daemon(const std::vector<std::string>& arguments = {}, const std::vector<std::string>& before = {});
 
+  /// Ends planemapd, and forgets what was heard of it.
+  void stop_daemon();
+
   /// Starts another program; its output goes to <name>.log in the test's folder.
   std::unique_ptr<Process> start(const std::string& name, const std::vector<std::string>& arguments) const;
   /// Runs a program to its end.

@@ -17,6 +17,10 @@ using std::chrono::milliseconds;
 constexpr int kQueuedMessages = 4096;
 constexpr std::size_t kMostWaiting = 16;  // deltas that do not connect to what is known
 
+bool ran_out_of_time(const Error& error) {
+  return error.kind == Error::Kind::kUnreachable || error.kind == Error::Kind::kIncomplete;
+}
+
 std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer* buffer) {
   return {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
 }
@@ -123,10 +127,14 @@ Expected<MapChange> LcmMapWatch::next(milliseconds timeout) {
     if (auto change = change_by_delta()) return *change;
     auto now = Clock::now();
     if (!mirror_.has_map() || (due_ && now >= due_->until)) {
-      const auto left = std::chrono::ceil<milliseconds>(deadline - now);
-      auto change = change_by_snapshot(std::max(left, milliseconds(1)));
-      if (!change || !change->empty()) return change;
+      auto left = std::max(std::chrono::ceil<milliseconds>(deadline - now), milliseconds(1));
+      if (mirror_.has_map()) left = std::max(left, requester_.options().catch_up_for);
+      auto change = change_by_snapshot(left);
       now = Clock::now();
+      const bool is_to_be_told = !change || !change->empty();
+      const bool may_come_yet = !change && mirror_.has_map() && ran_out_of_time(change.error()) &&
+                                now - heard_at_ < requester_.options().silent_after;
+      if (is_to_be_told && !may_come_yet) return change;
     }
     const auto silent_after = requester_.options().silent_after;
     const bool is_silent =

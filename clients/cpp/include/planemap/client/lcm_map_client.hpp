@@ -24,6 +24,8 @@ struct LcmClientOptions {
   std::chrono::milliseconds lost_page_after{200};   ///< no page for so long: the missing ones are asked for by number
   /// A watch: the status tells of a revision, and so long no delta to it came: the whole map is asked for.
   std::chrono::milliseconds lost_delta_after{1000};
+  /// A watch that lost news: so long it may ask for the whole map, if need be beyond a call's timeout.
+  std::chrono::milliseconds catch_up_for{2000};
   std::chrono::milliseconds silent_after{5000};  ///< a watch: nothing was heard for so long: the service is not there
 };
 
