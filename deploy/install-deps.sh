@@ -23,6 +23,7 @@ USAGE
 readonly RUN_PACKAGES=(
   iproute2            # the demo's network namespace
   jq                  # the demo reads the daemon's status with it
+  libgrpc++1.51
   libhwy1
   liblcm1
   libpcl-io1.13
@@ -41,6 +42,7 @@ readonly BUILD_PACKAGES=(
   libcli11-dev
   libeigen3-dev
   libexpected-dev
+  libgrpc++-dev
   libhwy-dev
   liblcm-bin          # lcm-gen
   liblcm-dev
@@ -52,6 +54,7 @@ readonly BUILD_PACKAGES=(
   ninja-build
   nlohmann-json3-dev
   protobuf-compiler
+  protobuf-compiler-grpc
   zlib1g-dev
 )
 readonly TEST_PACKAGES=(
@@ -67,6 +70,7 @@ readonly TEST_PACKAGES=(
   liblcm-bin          # lcm-logplayer, lcm-logger
   liboctomap-dev      # a peer, for planemap-bench
   nftables            # loses datagrams on purpose
+  openssl             # certificates of the tests
   python3             # run-clang-tidy
   shellcheck
   util-linux

@@ -9,14 +9,17 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "common/version.hpp"
 #include "config/service_config.hpp"
 #include "ingest/kernel_drops.hpp"
 #include "logging.hpp"
+#include "serve/grpc/grpc_server.hpp"
 #include "service.hpp"
 
 namespace planemap::service {
@@ -92,11 +95,24 @@ int serve(const ServiceConfig& config) {
     return kFailed;
   }
   Service service(config, **bus, epoch);
+  std::unique_ptr<GrpcServer> grpc;
+  if (!config.grpc.listen.empty()) {
+    auto started = GrpcServer::start(config, service.mapping(), service.status_board(), service.counter_board());
+    if (!started) {
+      spdlog::error("{}", started.error().message);
+      return kFailed;
+    }
+    grpc = std::move(*started);
+    service.set_snapshot_listener([&grpc] { grpc->wake(); });
+    spdlog::info("gRPC on {}{}", grpc->address(), config.grpc.tls_certificate.empty() ? "" : " with TLS");
+  }
   std::jthread bus_thread([&service](const std::stop_token& stop) { service.run(stop); });
   int signal = 0;
   sigwait(&signals, &signal);
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the process at once
   spdlog::info("{}: ending", signal == SIGINT ? "SIGINT" : "SIGTERM");
+  if (grpc) grpc->stop();
+  service.set_snapshot_listener({});
   bus_thread.request_stop();
   bus_thread.join();
   service.stop();

@@ -31,7 +31,7 @@ Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch
     : request_channel_(config.publish.request_channel),
       bus_(bus),
       // The mapper may have a snapshot before the server is made; it is not handed a scan before, though.
-      mapping_(config, epoch, counters_, [this] { server_.wake(); }),
+      mapping_(config, epoch, counters_, [this] { on_snapshot(); }),
       intake_(
           config, counters_, [this](RegisteredScan&& scan) { mapping_.push(std::move(scan)); },
           [](const std::string& text) { spdlog::warn("{}", text); }),
@@ -43,6 +43,17 @@ Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch
 
 Service::~Service() {
   stop();
+}
+
+void Service::on_snapshot() {
+  server_.wake();
+  const std::lock_guard lock(listener_mutex_);
+  if (snapshot_listener_) snapshot_listener_();
+}
+
+void Service::set_snapshot_listener(std::function<void()> listener) {
+  const std::lock_guard lock(listener_mutex_);
+  snapshot_listener_ = std::move(listener);
 }
 
 void Service::subscribe(const std::string& channel) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
+#include <mutex>
 #include <planemap/expected.hpp>
 #include <planemap/query/snapshot_queries.hpp>
 #include <planemap/snapshot.hpp>
@@ -39,6 +41,15 @@ class Service {
   /// Ends the threads. The destructor does it, too.
   void stop();
 
+  /// Told of each new snapshot on the mapper's thread, beside the server on the bus; must return at once. Empty: nobody
+  /// more is told; once this has returned, the one before is not called any more. From any thread.
+  void set_snapshot_listener(std::function<void()> listener);
+
+  // What another server than the one on the bus is made of; they live as long as the service.
+  MappingService& mapping() { return mapping_; }
+  Counters& counter_board() { return counters_; }
+  StatusBoard status_board() { return {intake_, mapping_, counters_}; }
+
   std::shared_ptr<const MapSnapshot> snapshot() const { return mapping_.snapshot(); }
   /// The newest snapshot with boundaries, classes and the index for queries; from any thread.
   std::shared_ptr<const SnapshotQueries> queries() { return book_.open(snapshot()); }
@@ -50,9 +61,13 @@ class Service {
   void subscribe(const std::string& channel);
   void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
 
+  void on_snapshot();
+
   std::string request_channel_;
   lcm::LCM& bus_;
   Counters counters_;
+  std::mutex listener_mutex_;
+  std::function<void()> snapshot_listener_;
   MappingService mapping_;
   ScanIntake intake_;
   PlaneBook book_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "describe.hpp"
+#include "query/argument_checks.hpp"
 #include "query/queries.hpp"
 #include "query/query_index.hpp"
 
@@ -103,6 +104,18 @@ Expected<RegionContents> SnapshotQueries::region(const RegionQuery& query) const
 
 Expected<PlaneLookup> SnapshotQueries::plane(PlaneId id) const {
   return look_up(*index_, id);
+}
+
+Expected<FilterMatch> SnapshotQueries::matching(const PlaneFilter& filter) const {
+  if (auto error = check_filter(filter, *index_->snapshot)) return tl::make_unexpected(*error);
+  const FilterTest test(*index_, filter);
+  FilterMatch match;
+  match.planes.reserve(index_->planes.size());
+  for (std::size_t i = 0; i < index_->planes.size(); ++i) {
+    if (test.passes(i)) match.planes.push_back(index_->planes[i].record->id);
+  }
+  match.other_cells = test.passes_cell_of(kNoPlane);
+  return match;
 }
 
 Expected<Floorplan> SnapshotQueries::floorplan(const FloorplanQuery& query) const {

@@ -1,7 +1,5 @@
 #include "codec/proto_codec.hpp"
 
-#include <planemap/v1/planes.pb.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,8 @@
 #include <cstddef>
 #include <string_view>
 #include <utility>
+
+#include "codec/proto_parts.hpp"
 
 namespace planemap::service {
 namespace {
@@ -20,34 +20,12 @@ constexpr std::array<v1::PlaneClass, 6> kClasses = {v1::PLANE_CLASS_OTHER,   v1:
                                                     v1::PLANE_CLASS_CEILING, v1::PLANE_CLASS_WALL,
                                                     v1::PLANE_CLASS_TABLE,   v1::PLANE_CLASS_SLOPE};
 
-void set(v1::Vector3& message, const Eigen::Vector3d& v) {
-  message.set_x(v.x());
-  message.set_y(v.y());
-  message.set_z(v.z());
-}
-
-Eigen::Vector3d vector_of(const v1::Vector3& message) {
-  return {message.x(), message.y(), message.z()};
-}
-
-void set(v1::Ring& message, const Ring& ring) {
-  message.mutable_uv_m()->Reserve(static_cast<int>(2 * ring.size()));
-  for (const Eigen::Vector2d& uv_m : ring) {
-    message.add_uv_m(static_cast<float>(uv_m.x()));
-    message.add_uv_m(static_cast<float>(uv_m.y()));
-  }
-}
-
-void set(v1::Outline& message, const Outline& outline) {
+void set_outline(v1::Outline& message, const Outline& outline) {
   set(*message.mutable_origin_m(), outline.basis.origin_m);
   set(*message.mutable_axis_u(), outline.basis.axis_u);
   set(*message.mutable_axis_v(), outline.basis.axis_v);
   message.set_area_m2(outline.area_m2);
-  for (const Polygon& polygon : outline.polygons) {
-    v1::Polygon& out = *message.add_polygons();
-    set(*out.mutable_outer(), polygon.outer);
-    for (const Ring& hole : polygon.holes) set(*out.add_holes(), hole);
-  }
+  for (const Polygon& polygon : outline.polygons) set(*message.add_polygons(), polygon);
 }
 
 bool is_unit(const Eigen::Vector3d& v) {
@@ -152,8 +130,13 @@ Expected<PlaneRecord> record_of(const v1::Plane& message) {
 
 }  // namespace
 
-v1::Plane to_proto(const ShapedPlane& plane) {
-  const PlaneRecord& record = plane.record;
+Expected<PlaneClass> class_of(v1::PlaneClass message) {
+  const auto* known = std::find(kClasses.begin(), kClasses.end(), message);
+  if (known == kClasses.end()) return fail("plane_class is not known");
+  return static_cast<PlaneClass>(known - kClasses.begin());
+}
+
+v1::Plane to_proto(const PlaneRecord& record, PlaneClass plane_class, const Outline& outline) {
   v1::Plane message;
   message.set_id(record.id);
   set(*message.mutable_normal(), record.plane.normal());
@@ -164,12 +147,16 @@ v1::Plane to_proto(const ShapedPlane& plane) {
   message.set_point_count(record.point_count);
   message.set_first_seen_utime(record.first_seen_utime);
   message.set_last_seen_utime(record.last_seen_utime);
-  message.set_plane_class(kClasses.at(static_cast<std::size_t>(plane.plane_class)));
+  message.set_plane_class(kClasses.at(static_cast<std::size_t>(plane_class)));
   message.set_quality(record.quality);
   message.set_revision(record.revision);
   for (const PlaneId id : record.merged) message.add_merged(id);
-  set(*message.mutable_outline(), plane.outline);
+  set_outline(*message.mutable_outline(), outline);
   return message;
+}
+
+v1::Plane to_proto(const ShapedPlane& plane) {
+  return to_proto(plane.record, plane.plane_class, plane.outline);
 }
 
 v1::Snapshot to_proto(const ShapedMap& map) {
@@ -188,9 +175,9 @@ Expected<ShapedPlane> from_proto(const v1::Plane& message) {
   if (!record) return fail_at(message, "", record.error());
   ShapedPlane plane;
   plane.record = std::move(*record);
-  const auto* known = std::find(kClasses.begin(), kClasses.end(), message.plane_class());
-  if (known == kClasses.end()) return fail_at(message, "", Error{"plane_class is not known"});
-  plane.plane_class = static_cast<PlaneClass>(known - kClasses.begin());
+  const auto plane_class = class_of(message.plane_class());
+  if (!plane_class) return fail_at(message, "", plane_class.error());
+  plane.plane_class = *plane_class;
   auto outline = outline_of_message(message.outline(), plane.record.plane.normal());
   if (!outline) return fail_at(message, "outline: ", outline.error());
   plane.outline = std::move(*outline);

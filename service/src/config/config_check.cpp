@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "config/config_reader.hpp"
+#include "config/listen_address.hpp"
 
 namespace planemap::service {
 namespace {
@@ -102,6 +103,25 @@ void check_gravity(MapConfig& map, ConfigProblems& problems) {
   }
 }
 
+void check_grpc(const GrpcConfig& grpc, ConfigProblems& problems) {
+  if (grpc.tls_certificate.empty() != grpc.tls_key.empty()) {
+    problems.add(grpc.tls_key.empty() ? "grpc.tls_key" : "grpc.tls_certificate",
+                 "is missing: certificate and key go together");
+  }
+  if (!grpc.tls_client_ca.empty() && grpc.tls_certificate.empty()) {
+    problems.add("grpc.tls_client_ca", "needs grpc.tls_certificate and grpc.tls_key: without TLS nobody shows one");
+  }
+  if (grpc.listen.empty()) return;
+  const auto address = parse_listen_address(grpc.listen);
+  if (!address) {
+    problems.add("grpc.listen", address.error().message);
+  } else if (!address->is_loopback() && grpc.tls_certificate.empty()) {
+    problems.add("grpc.listen", fmt::format("{} can be reached from other machines: it needs grpc.tls_certificate and "
+                                            "grpc.tls_key (or listen on 127.0.0.1)",
+                                            grpc.listen));
+  }
+}
+
 }  // namespace
 
 void check_config(ServiceConfig& config, ConfigProblems& problems) {
@@ -131,6 +151,7 @@ void check_config(ServiceConfig& config, ConfigProblems& problems) {
   check_channel_name("publish.status_channel", config.publish.status_channel, problems);
   check_channel_name("publish.delta_channel", config.publish.delta_channel, problems);
   check_channel_name("publish.request_channel", config.publish.request_channel, problems);
+  check_grpc(config.grpc, problems);
 }
 
 }  // namespace planemap::service

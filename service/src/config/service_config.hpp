@@ -158,6 +158,55 @@ void visit_fields(Config& c, Visit&& visit) {
         c.kept_replies);
 }
 
+struct GrpcConfig {
+  std::string listen = "127.0.0.1:7670";  ///< HOST:PORT, [HOST]:PORT for IPv6; port 0: any free one; empty: no server
+  std::string tls_certificate;            ///< PEM file, the server's own first, then those that signed it
+  std::string tls_key;                    ///< PEM file
+  std::string tls_client_ca;              ///< PEM file; empty: clients need no certificate
+  std::string token_file;                 ///< empty: no tokens are asked for
+  int threads = 2;                        ///< that work out answers
+  int max_waiting_calls = 64;             ///< for one of the threads; more are refused
+  int max_connections = 64;
+  int max_streams_per_connection = 64;  ///< calls at a time on one connection; more wait in the client
+  int max_streams = 128;                ///< watchers and answers in pages, of all clients; more are refused
+  int max_request_bytes = 1048576;
+  double index_age_s = 0.1;     ///< a query is answered by a map that may be older by so much
+  double watch_period_s = 0.1;  ///< least time between two deltas
+  double heartbeat_s = 5.0;     ///< of watchers that ask for no other
+};
+
+template <MaybeConst<GrpcConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(
+      FieldInfo{"listen", "HOST:PORT, off the loopback with TLS only; port 0: any free one; empty: no server", 0, 255},
+      c.listen);
+  visit(FieldInfo{"tls_certificate", "PEM file: the server's certificate, then those that signed it; empty: no TLS", 0,
+                  4096},
+        c.tls_certificate);
+  visit(FieldInfo{"tls_key", "PEM file: the certificate's private key", 0, 4096}, c.tls_key);
+  visit(FieldInfo{"tls_client_ca",
+                  "PEM file: clients need a certificate that one of these signed; empty: they need none", 0, 4096},
+        c.tls_client_ca);
+  visit(FieldInfo{"token_file", "lines of a scope (read or admin) and a token; empty: no token is asked for", 0, 4096},
+        c.token_file);
+  visit(FieldInfo{"threads", "threads that work out answers", 1, 64}, c.threads);
+  visit(FieldInfo{"max_waiting_calls", "calls that wait for one of the threads; more are refused", 1, 10000},
+        c.max_waiting_calls);
+  visit(FieldInfo{"max_connections", "connections at a time; more are closed at once", 1, 10000}, c.max_connections);
+  visit(FieldInfo{"max_streams_per_connection", "calls at a time on one connection; more wait in the client", 1, 10000},
+        c.max_streams_per_connection);
+  visit(FieldInfo{"max_streams", "watchers and answers in pages at a time, of all clients; more are refused", 1, 10000},
+        c.max_streams);
+  visit(FieldInfo{"max_request_bytes", "greatest message that is taken", 1024, 4194304}, c.max_request_bytes);
+  visit(FieldInfo{"index_age_s", "queries may be answered by a map that is older by so much; 0: always the newest", 0.0,
+                  60.0},
+        c.index_age_s);
+  visit(FieldInfo{"watch_period_s", "least time between two deltas of Watch", 0.01, 60.0}, c.watch_period_s);
+  visit(FieldInfo{"heartbeat_s", "watchers hear something at least so often, unless they ask for another time", 0.1,
+                  3600.0},
+        c.heartbeat_s);
+}
+
 struct LogConfig {
   std::string level = "info";
   std::string format = "text";
@@ -192,6 +241,7 @@ struct ServiceConfig {
   PoseConfig pose;
   QueueConfig queue;
   PublishConfig publish;
+  GrpcConfig grpc;
   LogConfig log;
   LimitsConfig limits;
 };
@@ -217,6 +267,7 @@ void visit_sections(Config& c, Visit&& visit) {
   visit(SectionInfo{"pose", "How poses are found for scans."}, c.pose);
   visit(SectionInfo{"queue", "Scans with a pose, on their way to the mapper."}, c.queue);
   visit(SectionInfo{"publish", "What goes out over LCM."}, c.publish);
+  visit(SectionInfo{"grpc", "What remote clients may ask over gRPC (planemap.v1)."}, c.grpc);
   visit(SectionInfo{"log", "The log, on standard error."}, c.log);
   visit(SectionInfo{"limits", "What is taken from the outside at most."}, c.limits);
 }

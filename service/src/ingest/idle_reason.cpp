@@ -64,6 +64,7 @@ std::string input_reason(const InputFacts& input, double now_host_s) {
 }  // namespace
 
 std::string idle_reason(std::span<const InputFacts> inputs, const MapperFacts& mapper, double now_host_s) {
+  if (mapper.is_paused) return "mapping is paused: scans are dropped until it is resumed";
   if (mapper.mapped > 0 && is_recent(mapper.last_mapped_host_s, now_host_s)) return {};
   std::vector<std::string> reasons = mapper_reasons(mapper, now_host_s);
   const bool mapper_says_why = !reasons.empty();

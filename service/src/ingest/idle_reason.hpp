@@ -39,6 +39,7 @@ struct MapperFacts {
   double last_dropped_host_s = 0.0;
   std::string last_error{};  ///< why the last scan that it failed at could not be mapped; empty: none
   double last_error_host_s = 0.0;
+  bool is_paused = false;
 };
 
 /// Nothing was mapped for so long: idle. Slow sensors of one scan in two seconds are not.

@@ -43,10 +43,15 @@ MappingService::~MappingService() {
 void MappingService::stop() {
   thread_.request_stop();
   if (thread_.joinable()) thread_.join();
-  for (std::size_t left = queue_.clear(); left > 0; --left) counters_.scan_dropped("shutdown");
+  drop_waiting("shutdown");
+}
+
+void MappingService::drop_waiting(const char* reason) {
+  for (std::size_t left = queue_.clear(); left > 0; --left) counters_.scan_dropped(reason);
 }
 
 void MappingService::push(RegisteredScan&& scan) {
+  if (is_paused()) return counters_.scan_dropped("paused");
   if (queue_.push_dropping_oldest(std::move(scan)) == 0) return;
   counters_.scan_dropped("queue_full");
   const std::lock_guard lock(mutex_);
@@ -54,8 +59,71 @@ void MappingService::push(RegisteredScan&& scan) {
   stats_.last_dropped_host_s = steady_now_s();
 }
 
+void MappingService::pause() {
+  {
+    const std::lock_guard lock(mutex_);
+    stats_.is_paused = true;
+  }
+  drop_waiting("paused");
+}
+
+bool MappingService::is_paused() const {
+  const std::lock_guard lock(mutex_);
+  return stats_.is_paused;
+}
+
+void MappingService::resume() {
+  const std::lock_guard lock(mutex_);
+  stats_.is_paused = false;
+}
+
+std::optional<std::uint64_t> MappingService::reset(std::chrono::steady_clock::duration timeout) {
+  drop_waiting("reset");
+  std::unique_lock lock(mutex_);
+  const std::uint64_t number = ++asked_resets_;
+  queue_.interrupt();
+  if (!reset_done_.wait_for(lock, timeout, [&] { return done_resets_ >= number; })) return std::nullopt;
+  return snapshot_->epoch();
+}
+
+/// On the mapper's thread. Unlike after a jump of the pose, readers get the new map at once, though it is empty.
+void MappingService::begin_asked_maps() {
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (asked_resets_ == done_resets_) return;
+    number = asked_resets_;
+  }
+  resets_ += number - done_resets_;
+  const std::uint64_t epoch = first_epoch_ + map_number_ + resets_;
+  const auto old = snapshot();
+  mapper_ = Mapper(config_, epoch);
+  counters_.add("map.resets");
+  publish(mapper_.snapshot());
+  spdlog::info("a new map begins on demand, epoch {}; that of epoch {} had {} planes, revision {}", epoch, old->epoch(),
+               old->planes().size(), old->revision());
+  {
+    const std::lock_guard lock(mutex_);
+    done_resets_ = number;
+  }
+  reset_done_.notify_all();
+  if (on_snapshot_) on_snapshot_();
+}
+
+void MappingService::publish(std::shared_ptr<const MapSnapshot> snapshot) {
+  const std::lock_guard lock(mutex_);
+  snapshot_.swap(snapshot);
+}
+
 void MappingService::run(const std::stop_token& stop) {
-  while (auto scan = queue_.pop(stop)) {
+  while (!stop.stop_requested()) {
+    begin_asked_maps();
+    const auto scan = queue_.pop(stop);
+    if (!scan) continue;
+    if (is_paused()) {  // it came while pause() emptied the queue
+      counters_.scan_dropped("paused");
+      continue;
+    }
     note_busy(steady_now_s());
     bool is_mapped = false;
     try {
@@ -85,7 +153,7 @@ void MappingService::note_error(std::string error) {
 
 /// Readers keep the old map until the first scan of the new one is in it.
 void MappingService::begin_new_map(std::uint64_t map_number) {
-  const std::uint64_t epoch = first_epoch_ + map_number;
+  const std::uint64_t epoch = first_epoch_ + map_number + resets_;
   mapper_ = Mapper(config_, epoch);
   map_number_ = map_number;
   counters_.add("map.resets");

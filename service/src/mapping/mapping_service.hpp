@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -33,6 +35,7 @@ struct MappingStats {
   double last_dropped_host_s = 0.0;
   std::string last_error;  ///< why the last scan that could not be mapped could not; empty: none
   double last_error_host_s = 0.0;
+  bool is_paused = false;
 };
 
 /// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
@@ -55,6 +58,15 @@ class MappingService {
   std::shared_ptr<const MapSnapshot> snapshot() const;
   /// @param now_host_s  the host's steady clock, seconds
   MappingStats stats(double now_host_s) const;
+  /// From now on scans are dropped and counted ("paused"), those that wait too; the map stays. From any thread.
+  void pause();
+  /// Scans are mapped again. From any thread.
+  void resume();
+  bool is_paused() const;
+  /// Begins a new, empty map of a greater epoch once the scan at hand is mapped; scans that wait are dropped and
+  /// counted ("reset"). From any thread.
+  /// @return epoch of the new map; empty: the mapper did not come to it in time (it will), or has ended
+  std::optional<std::uint64_t> reset(std::chrono::steady_clock::duration timeout);
   /// Ends the thread after the scan at hand; scans that still wait are dropped and counted. Called by the destructor,
   /// too.
   void stop();
@@ -63,6 +75,9 @@ class MappingService {
   void run(const std::stop_token& stop);
   void map(const RegisteredScan& scan);
   void begin_new_map(std::uint64_t map_number);
+  void begin_asked_maps();
+  void publish(std::shared_ptr<const MapSnapshot> snapshot);
+  void drop_waiting(const char* reason);
   void note_busy(std::optional<double> since_host_s);
   void note_error(std::string error);
 
@@ -71,8 +86,9 @@ class MappingService {
   Counters& counters_;
   std::function<void()> on_snapshot_;
   ScanQueue queue_;
-  Mapper mapper_;                 ///< of the mapper's thread alone, like the two below
+  Mapper mapper_;                 ///< of the mapper's thread alone, like the three below
   std::uint64_t map_number_ = 0;  ///< of the map that is being made
+  std::uint64_t resets_ = 0;      ///< maps that were begun on demand: each is one more life
   RepeatGuard repeats_;
 
   mutable std::mutex mutex_;  ///< of what follows; held for copies only
@@ -80,6 +96,9 @@ class MappingService {
   MappingStats stats_;
   std::deque<double> scan_ms_;           ///< of the last 100 scans
   std::deque<double> mapped_at_host_s_;  ///< of the last second
+  std::uint64_t asked_resets_ = 0;
+  std::uint64_t done_resets_ = 0;
+  std::condition_variable reset_done_;
 
   std::jthread thread_;  ///< last: ends before what it uses
 };

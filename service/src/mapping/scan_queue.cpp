@@ -26,10 +26,19 @@ std::size_t ScanQueue::push_dropping_oldest(RegisteredScan&& scan) {
 
 std::unique_ptr<RegisteredScan> ScanQueue::pop(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  if (!not_empty_.wait(lock, stop, [this] { return !scans_.empty(); }) || stop.stop_requested()) return nullptr;
+  not_empty_.wait(lock, stop, [this] { return !scans_.empty() || is_interrupted_; });
+  if (stop.stop_requested() || std::exchange(is_interrupted_, false)) return nullptr;
   auto scan = std::move(scans_.front());
   scans_.pop_front();
   return scan;
+}
+
+void ScanQueue::interrupt() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_interrupted_ = true;
+  }
+  not_empty_.notify_one();
 }
 
 std::size_t ScanQueue::clear() {

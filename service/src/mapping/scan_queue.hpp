@@ -20,8 +20,10 @@ class ScanQueue {
 
   /// @return how many scans had to go: 0 or 1
   std::size_t push_dropping_oldest(RegisteredScan&& scan);
-  /// Waits for a scan; nullptr after a stop request, though scans may be left.
+  /// Waits for a scan; nullptr after a stop request or an interrupt(), though scans may be left.
   std::unique_ptr<RegisteredScan> pop(const std::stop_token& stop);
+  /// Ends a pop() that waits, or else the next one.
+  void interrupt();
   /// Empties the queue. @return how many scans were in it
   std::size_t clear();
   std::size_t size() const;
@@ -32,6 +34,7 @@ class ScanQueue {
   mutable std::mutex mutex_;
   std::condition_variable_any not_empty_;
   std::deque<std::unique_ptr<RegisteredScan>> scans_;
+  bool is_interrupted_ = false;
 };
 
 }  // namespace planemap::service

@@ -19,6 +19,12 @@ struct PlaneFilter {
   std::optional<std::uint64_t> epoch;
 };
 
+/// What passes a filter.
+struct FilterMatch {
+  std::vector<PlaneId> planes;  ///< ascending
+  bool other_cells = false;     ///< cells of no plane do, too: nothing is asked of planes
+};
+
 /// Standard deviation of a plane's normal in the direction in which it is known worst, radians: the root of the
 /// greatest eigenvalue of the covariance of (nx, ny, nz).
 double normal_deviation_rad(const PlaneRecord& record);

@@ -7,6 +7,7 @@
 #include <planemap/expected.hpp>
 #include <planemap/query/floorplan.hpp>
 #include <planemap/query/nearest.hpp>
+#include <planemap/query/plane_filter.hpp>
 #include <planemap/query/plane_lookup.hpp>
 #include <planemap/query/ray_cast.hpp>
 #include <planemap/query/region.hpp>
@@ -55,6 +56,8 @@ class SnapshotQueries {
   Expected<RegionContents> region(const RegionQuery& query) const;
   /// Everything about one plane, also where it was merged into another. Fails for id 0 only; see PlaneFate.
   Expected<PlaneLookup> plane(PlaneId id) const;
+  /// The planes that pass a filter, those without a boundary too.
+  Expected<FilterMatch> matching(const PlaneFilter& filter) const;
   /// Walls and free floor seen from above. Fails also where gravity is not known, or no floor was seen.
   Expected<Floorplan> floorplan(const FloorplanQuery& query = {}) const;
 

@@ -1,0 +1,53 @@
+#include "serve/grpc/admin_service.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+namespace planemap::service {
+namespace {
+
+/// The scan at hand is mapped first.
+constexpr std::chrono::seconds kResetTimeout(5);
+
+}  // namespace
+
+grpc::ServerUnaryReactor* AdminService::Save(grpc::CallbackServerContext* context, const v1::SaveRequest*,
+                                             v1::SaveResponse*) {
+  return answer(desk_, context, Scope::kAdmin, []() -> grpc::Status {
+    return {grpc::StatusCode::UNIMPLEMENTED, "this version of planemapd has no store: the map cannot be saved"};
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::Reset(grpc::CallbackServerContext* context, const v1::ResetRequest*,
+                                              v1::ResetResponse* response) {
+  return answer(desk_, context, Scope::kAdmin, [this, context, response]() -> grpc::Status {
+    spdlog::info("gRPC: {} asks for a new map", context->peer());
+    const auto epoch = mapping_.reset(kResetTimeout);
+    if (!epoch) {
+      return {grpc::StatusCode::UNAVAILABLE, "the mapper is busy with a scan; the new map begins once that is mapped"};
+    }
+    response->set_epoch(*epoch);
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::Pause(grpc::CallbackServerContext* context, const v1::PauseRequest*,
+                                              v1::PauseResponse*) {
+  return answer(desk_, context, Scope::kAdmin, [this, context] {
+    spdlog::info("gRPC: {} pauses the mapping", context->peer());
+    mapping_.pause();
+    return grpc::Status::OK;
+  });
+}
+
+grpc::ServerUnaryReactor* AdminService::Resume(grpc::CallbackServerContext* context, const v1::ResumeRequest*,
+                                               v1::ResumeResponse*) {
+  return answer(desk_, context, Scope::kAdmin, [this, context] {
+    spdlog::info("gRPC: {} resumes the mapping", context->peer());
+    mapping_.resume();
+    return grpc::Status::OK;
+  });
+}
+
+}  // namespace planemap::service
