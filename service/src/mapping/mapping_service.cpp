@@ -178,9 +178,9 @@ void MappingService::map(const RegisteredScan& scan) {
     stats_.last_scan_utime = utime_of(scan.scan);
     stats_.last_mapped_host_s = end_s;
     scan_ms_.push_back(1e3 * (end_s - begin_s));
-    if (scan_ms_.size() > kTimedScans) scan_ms_.pop_front();
+    if (scan_ms_.size() > kTimedScans) scan_ms_.erase(scan_ms_.begin());
     mapped_at_host_s_.push_back(end_s);
-    while (mapped_at_host_s_.front() < end_s - kRateWindowS) mapped_at_host_s_.pop_front();
+    std::erase_if(mapped_at_host_s_, [&](double at_s) { return at_s < end_s - kRateWindowS; });
   }
   counters_.scan_mapped(report.points);
   counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include <planemap/snapshot.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/counters.hpp"
 #include "common/repeat_guard.hpp"
@@ -94,8 +94,8 @@ class MappingService {
   mutable std::mutex mutex_;  ///< of what follows; held for copies only
   std::shared_ptr<const MapSnapshot> snapshot_;
   MappingStats stats_;
-  std::deque<double> scan_ms_;           ///< of the last 100 scans
-  std::deque<double> mapped_at_host_s_;  ///< of the last second
+  std::vector<double> scan_ms_;           ///< of the last 100 scans; short, and never gives its memory back
+  std::vector<double> mapped_at_host_s_;  ///< of the last second
   std::uint64_t asked_resets_ = 0;
   std::uint64_t done_resets_ = 0;
   std::condition_variable reset_done_;

@@ -42,6 +42,7 @@ void define_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--simd", arguments.simd, "instruction set")
       ->transform(CLI::CheckedTransformer(std::map<std::string, SimdTarget>{{"auto", SimdTarget::kAuto},
                                                                             {"avx2", SimdTarget::kAvx2},
+                                                                            {"avx512", SimdTarget::kAvx512},
                                                                             {"sse4", SimdTarget::kSse4},
                                                                             {"neon", SimdTarget::kNeon},
                                                                             {"scalar", SimdTarget::kScalar}}));

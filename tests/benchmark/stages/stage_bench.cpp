@@ -26,6 +26,7 @@ struct NamedTarget {
   SimdTarget target;
 };
 constexpr NamedTarget kTargets[] = {{"avx2", SimdTarget::kAvx2},
+                                    {"avx512", SimdTarget::kAvx512},
                                     {"sse4", SimdTarget::kSse4},
                                     {"neon", SimdTarget::kNeon},
                                     {"scalar", SimdTarget::kScalar}};
