@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "angles.hpp"
+#include "planemap/membership.hpp"
 #include "sort_unique.hpp"
 
 namespace planemap {
@@ -33,6 +34,7 @@ PlaneMap::PlaneMap(const GridConfig& grid, const PlaneConfig& planes, const Pose
       last_pose_(configured_covariance(pose_error)),
       pose_variance_m2_(band_variance_m2(last_pose_, planes.plane_offset_m)),
       max_angle_rad_(planes.normal_angle_deg * kRadPerDeg),
+      alike_cosine_(std::cos(planes.normal_angle_deg * kRadPerDeg)),
       core_cosine_(std::cos(planes.core_angle_deg * kRadPerDeg)),
       states_(1),
       coarse_(0.5 * std::max(planes.bridge_gap_m, 4.0 * grid.cell_size_m)) {}
@@ -291,11 +293,43 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref, std::
   return best;
 }
 
+PlaneSlot PlaneMap::better_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const {
+  constexpr double kNearer_m = 0.003;  // more than flat planes err by
+  constexpr double kSigmas = 3.0;
+  const Cell& cell = grid.cell(ref);
+  if (!config_.splits || cell.plane == kNoSlot || !cell.has_evidence()) return kNoSlot;
+  const double variance_m2 = cell.evidence_variance_m2();
+  if (is_layered(variance_m2, grid.cell_size_m())) return kNoSlot;
+  const double sigma_m = std::sqrt(variance_m2 / static_cast<double>(cell.evidence_count) + pose_variance_m2_);
+  const Eigen::Vector3d mean_m = grid.geometric_centre_m(ref) + cell.evidence.unpacked().mean();
+  const auto is_flat = [&](PlaneSlot slot) { return is_pure(state(slot).statistics, state(slot).fit); };
+  const Plane& own = state(cell.plane).fit.plane;
+  double least_m = std::abs(own.signed_distance_m(mean_m)) - kNearer_m - kSigmas * sigma_m;
+  if (least_m <= 0.0 || !is_flat(cell.plane)) return kNoSlot;
+  PlaneSlot best = kNoSlot;
+  PlaneSlot last = cell.plane;
+  for (const CellRef other : around) {
+    const PlaneSlot slot = grid.cell(other).plane;
+    if (slot == kNoSlot || slot == last || slot == cell.plane || is_sibling(grid, ref, slot)) continue;
+    last = slot;
+    const Plane& plane = state(slot).fit.plane;
+    const double distance_m = std::abs(plane.signed_distance_m(mean_m));
+    if (distance_m >= least_m || plane.normal().dot(own.normal()) < alike_cosine_ || !is_flat(slot)) continue;
+    least_m = distance_m;
+    best = slot;
+  }
+  return best;
+}
+
 void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods) {
   for (std::uint32_t i = 0; i < changes.size(); ++i) {
     const CellChange& change = changes[i];
     const Cell& cell = grid.cell(change.cell);
     if (cell.sums.count <= grid_config_.density_threshold) continue;
+    if (const PlaneSlot better = better_neighbour(grid, change.cell, neighbourhoods.around(i)); better != kNoSlot) {
+      take(grid, change.cell, better);
+      continue;
+    }
     if (cell.plane != kNoSlot && !(config_.slab_sigmas > 0.0)) continue;
     const PlaneSlot slot = best_neighbour(grid, change.cell, neighbourhoods.around(i));
     if (slot == kNoSlot) continue;
@@ -303,8 +337,8 @@ void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes, c
   }
 }
 
-/// A new plane takes in what lay around it without a plane, and merges with what it thereby reaches: nobody may look
-/// there again.
+/// A new plane takes in what lay around it without a plane, or in one that it is not on, and merges with what it
+/// thereby reaches: nobody may look there again.
 void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report) {
   if (!states_[slot]) return;
   const auto look_around = [&](CellRef ref) {
@@ -313,14 +347,16 @@ void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report)
   };
   for (std::size_t next = 0; next < state(slot).cells.size(); ++next) {
     look_around(state(slot).cells[next]);
-    unlabelled_.clear();
-    std::copy_if(around_.begin(), around_.end(), std::back_inserter(unlabelled_), [&](CellRef other) {
+    others_.clear();
+    std::copy_if(around_.begin(), around_.end(), std::back_inserter(others_), [&](CellRef other) {
       const Cell& cell = grid.cell(other);
-      return cell.plane == kNoSlot && cell.sums.count > grid_config_.density_threshold;
+      return cell.plane != slot && cell.sums.count > grid_config_.density_threshold;
     });
-    for (const CellRef ref : unlabelled_) {
+    for (const CellRef ref : others_) {
       look_around(ref);
-      if (best_neighbour(grid, ref, around_) == slot) join(grid, ref, slot);
+      const bool free = grid.cell(ref).plane == kNoSlot;
+      const PlaneSlot goes_to = free ? best_neighbour(grid, ref, around_) : better_neighbour(grid, ref, around_);
+      if (goes_to == slot) take(grid, ref, slot);
     }
   }
   refit(slot);

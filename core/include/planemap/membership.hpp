@@ -20,6 +20,10 @@ constexpr double kLeastPatchSpread = 0.15;
 /// @param variance_m2  of the points along the plane's normal
 double expected_scatter_m2(double centre_m, double cell_size_m, double variance_m2);
 
+/// Whether noise of that variance spreads points over several layers of cells: then the mean of a cell's points says
+/// little of where their surface is.
+bool is_layered(double variance_m2, double cell_size_m);
+
 /// Whether the mean of a cell's evidence surely lies off a plane. False where the noise spreads over several cells.
 bool lies_aside(const Cell& cell, const Eigen::Vector3d& centre_m, const Plane& plane, double cell_size_m);
 

@@ -137,6 +137,9 @@ class PlaneMap {
   bool is_sibling(const UncertainGrid& grid, CellRef ref, PlaneSlot slot) const;
   void adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods);
   PlaneSlot best_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const;
+  /// Of the planes beside a cell that are alike its own, the one that the cell's points are on while they are not on
+  /// their own. kNoSlot: there is none.
+  PlaneSlot better_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const;
   void bridge(UncertainGrid& grid, std::span<const CellChange> changes, GlobalReport& report);
   PlaneSlot bridge_partner(const UncertainGrid& grid, std::span<const CellChange> changes, PlaneSlot slot);
   void dissolve_small(UncertainGrid& grid, GlobalReport& report);
@@ -153,6 +156,7 @@ class PlaneMap {
   double pose_variance_m2_;   ///< what a pose's error does to a point's distance to its plane: mean over the scans
   std::int64_t scans_ = 0;
   double max_angle_rad_;
+  double alike_cosine_;  ///< of the angle up to which normals are similar
   double core_cosine_;
   std::vector<std::unique_ptr<State>> states_;  ///< by slot; slot 0 is no plane; empty: removed
   std::vector<PlaneSlot> born_;                 ///< of this scan
@@ -169,7 +173,7 @@ class PlaneMap {
   std::vector<PlaneSlot> candidates_;
   std::vector<CellRef> free_;
   std::vector<CellRef> around_;
-  std::vector<CellRef> unlabelled_;
+  std::vector<CellRef> others_;
   std::vector<std::uint64_t> cubes_;
   std::vector<PlaneSlot> near_;
 };
