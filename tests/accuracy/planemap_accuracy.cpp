@@ -41,17 +41,18 @@ void print_surfaces(const Run& run) {
 }
 
 void print_heading(const std::string& preset) {
-  std::printf("%s\n  %-20s %7s %17s %5s %5s %6s %5s %9s %14s %14s  %6s %8s %6s %6s  %9s %5s %5s  %6s %6s  %6s\n",
-              preset.c_str(), "scene", "planes", "correct", "over", "under", "missed", "noise", "labelled",
+  std::printf("%s\n  %-20s %7s %17s %5s %5s %6s %5s %6s %9s %14s %14s  %6s %8s %6s %6s  %9s %5s %5s  %6s %6s  %6s\n",
+              preset.c_str(), "scene", "planes", "correct", "over", "under", "missed", "noise", "joined", "labelled",
               "normal deg, max", "offset mm, max", "nees", "mean", "<7.81", "95 %", "cells deg", "/dev", "p95", "area",
               "worst", "ms");
 }
 
 void print_row(const std::string& name, const Summary& s) {
   std::printf(
-      "  %-20s %7zu %7zu (%5.1f %%) %5zu %5zu %6zu %5zu %7.1f %% %7.3f %7.3f %6.2f %7.2f  %6.2f %8.1f %6.1f %6.1f  "
+      "  %-20s %7zu %7zu (%5.1f %%) %5zu %5zu %6zu %5zu %6zu %7.1f %% %7.3f %7.3f %6.2f %7.2f  %6.2f %8.1f %6.1f %6.1f "
+      " "
       "%9.3f %5.2f %5.2f  %+5.1f%% %+5.1f%%  %6.1f\n",
-      name.c_str(), s.surfaces, s.correct, 100.0 * s.correct_share(), s.over, s.under, s.missed, s.noise,
+      name.c_str(), s.surfaces, s.correct, 100.0 * s.correct_share(), s.over, s.under, s.missed, s.noise, s.joined,
       100.0 * s.labelled_share, s.normal_mean_deg, s.normal_max_deg, 1e3 * s.offset_mean_m, 1e3 * s.offset_max_m,
       s.nees_median, s.nees_mean, 100.0 * s.nees_below, 100.0 * s.nees_within, s.inside_cells.mean_deg,
       s.inside_cells.ratio_median, s.inside_cells.ratio_p95, 100.0 * s.outlines.area_mean,
@@ -82,6 +83,7 @@ nlohmann::json to_json(const Summary& s) {
           {"underSegmented", s.under},
           {"missed", s.missed},
           {"noise", s.noise},
+          {"joined", s.joined},
           {"storedCells", s.stored_cells},
           {"wornCells", s.worn_cells},
           {"labelledShare", s.labelled_share},

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "joined_surfaces.hpp"
+
 namespace planemap::accuracy {
 
 namespace {
@@ -79,7 +81,7 @@ double nees_of(const PlaneRecord& record, const Plane& truth, double covariance_
   return nees;
 }
 
-/// Overlap of each surface with each plane, square metres.
+/// Overlap of each surface with each plane, square metres. What counts as part of another surface is in that one.
 struct Table {
   std::vector<double> seen_m2;                        ///< by surface
   std::vector<std::map<PlaneId, double>> overlap_m2;  ///< by surface, then plane
@@ -87,7 +89,7 @@ struct Table {
   std::map<PlaneId, double> plane_m2;                 ///< all of a plane: on surfaces, and on none
 };
 
-Table tabulate(const MapSnapshot& map, const SeenSurfaces& seen) {
+Table tabulate(const MapSnapshot& map, const SeenSurfaces& seen, const std::vector<std::size_t>& whole) {
   Table table{std::vector<double>(seen.surfaces().size()), {}, {}, {}};
   table.overlap_m2.resize(seen.surfaces().size());
   const CellFinder cells(map);
@@ -95,12 +97,13 @@ Table tabulate(const MapSnapshot& map, const SeenSurfaces& seen) {
   std::map<std::array<int, 3>, bool> near_surface;
   for (const SeenSurfaces::Patch& patch : seen.patches()) {
     const simulation::Surface& surface = seen.surfaces()[patch.surface];
-    table.seen_m2[patch.surface] += patch.area_m2;
+    const std::size_t counted = whole[patch.surface];
+    table.seen_m2[counted] += patch.area_m2;
     const Eigen::Array3i i = (patch.centre_m.array() / size_m).floor().cast<int>();
     near_surface[{i.x(), i.y(), i.z()}] = true;
     const PlaneId plane = cells.plane_at(patch.centre_m, surface.plane.normal());
     if (plane == kNoPlane) continue;
-    table.overlap_m2[patch.surface][plane] += patch.area_m2;
+    table.overlap_m2[counted][plane] += patch.area_m2;
     table.plane_m2[plane] += patch.area_m2;
     if (surface.facet && std::abs(map.find(plane)->plane.signed_distance_m(patch.centre_m)) <= kFacetOffset_m) {
       table.facet_m2[plane] += patch.area_m2;
@@ -140,6 +143,12 @@ void measure(const PlaneRecord& record, const Plane& truth, double covariance_sc
   s.normal_error_deg = angle_rad(record.plane.normal(), truth.normal()) * 180.0 / std::numbers::pi;
   s.offset_error_m = std::abs(truth.signed_distance_m(record.centroid_m));
   s.nees = nees_of(record, truth, covariance_scale);
+}
+
+OutlineScore outline_score(const MapSnapshot& map, const SeenSurfaces& seen, PlaneId plane, std::size_t surface) {
+  const PlaneRecord& record = *map.find(plane);
+  const Outline outline = outline_of(record.plane, record.centroid_m, centres_of(map, plane), map.cell_size_m());
+  return score_outline(outline, seen, surface);
 }
 
 /// @param correct  correct surfaces by their planes
@@ -200,13 +209,18 @@ double Score::labelled_m2() const {
 }
 
 Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions& options) {
-  const Table table = tabulate(map, seen);
+  const std::vector<std::size_t> whole = joined_surfaces(seen.surfaces());
+  const Table table = tabulate(map, seen, whole);
   Score result;
   std::map<PlaneId, bool> on_surface;
   std::map<PlaneId, std::size_t> correct;  // surface by plane
   for (std::size_t i = 0; i < seen.surfaces().size(); ++i) {
     const simulation::Surface& surface = seen.surfaces()[i];
     if (surface.facet) continue;
+    if (whole[i] != i) {
+      if (seen.seen_m2(i) >= options.least_m2) ++result.joined;
+      continue;
+    }
     SurfaceScore s;
     s.name = surface.name;
     s.seen_m2 = table.seen_m2[i];
@@ -224,9 +238,8 @@ Score score(const MapSnapshot& map, const SeenSurfaces& seen, const ScoreOptions
     s.verdict = judge(table, i, s, options.overlap);
     if (s.verdict == Verdict::kCorrect) {
       measure(*map.find(s.plane), surface.plane, options.covariance_scale, s);
-      const PlaneRecord& record = *map.find(s.plane);
-      const Outline outline = outline_of(record.plane, record.centroid_m, centres_of(map, s.plane), map.cell_size_m());
-      s.outline = score_outline(outline, seen, i);
+      // What was seen is known by surface: the outline of a plane that holds parts of two is not scored.
+      if (std::count(whole.begin(), whole.end(), i) == 1) s.outline = outline_score(map, seen, s.plane, i);
       correct[s.plane] = i;
     }
     result.surfaces.push_back(s);

@@ -40,6 +40,7 @@ struct CellNormalError {
 
 struct Score {
   std::vector<SurfaceScore> surfaces;
+  std::size_t joined = 0;  ///< surfaces of which enough was seen that count as part of another: no map can tell them
   std::vector<PlaneId> noise;  ///< planes of at least the least area that are on no surface, with too little overlap
   std::vector<CellNormalError> cell_normals;
 

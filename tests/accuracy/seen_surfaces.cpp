@@ -89,6 +89,10 @@ std::vector<Eigen::Vector2i> SeenSurfaces::squares(std::size_t surface) const {
   return squares;
 }
 
+double SeenSurfaces::seen_m2(std::size_t surface) const {
+  return kPitch_m * kPitch_m * static_cast<double>(squares(surface).size());
+}
+
 bool SeenSurfaces::all_seen_about(std::size_t surface, const Eigen::Vector3d& p_world_m, double distance_m) const {
   const Eigen::Vector2d uv_m = bases_[surface].to_plane(p_world_m);
   const Eigen::Array2i first = ((uv_m.array() - distance_m) / kPitch_m).floor().cast<int>();

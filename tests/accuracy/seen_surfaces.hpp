@@ -33,6 +33,8 @@ class SeenSurfaces {
   const PlaneBasis& basis(std::size_t surface) const { return bases_[surface]; }
   /// The squares of a surface that were seen, ordered: each from kPitch_m times its two numbers on, in the basis.
   std::vector<Eigen::Vector2i> squares(std::size_t surface) const;
+  /// How much of a surface was seen, square metres.
+  double seen_m2(std::size_t surface) const;
   /// In how many frames a surface had a return.
   std::size_t frames(std::size_t surface) const { return frames_[surface]; }
   /// Whether all squares of a surface that come within a distance of a point were seen.

@@ -119,6 +119,7 @@ Summary summarise(std::span<const Run> runs) {
     s.under += run.score.count(Verdict::kUnderSegmented);
     s.missed += run.score.count(Verdict::kMissed);
     s.noise += run.score.noise.size();
+    s.joined += run.score.joined;
     s.stored_cells += run.stored_cells;
     s.worn_cells += run.worn_cells;
     seen_m2 += run.score.seen_m2();

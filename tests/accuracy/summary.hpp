@@ -50,6 +50,7 @@ struct Summary {
   std::size_t under = 0;
   std::size_t missed = 0;
   std::size_t noise = 0;
+  std::size_t joined = 0;  ///< surfaces that count as part of another
   std::size_t stored_cells = 0;
   std::size_t worn_cells = 0;
   double labelled_share = 0.0;

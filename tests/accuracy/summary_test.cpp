@@ -45,6 +45,7 @@ TEST(Summary, CountsAndSharesByHand) {
   runs[1].score.surfaces[1].offset_error_m = 0.01;
   runs[1].score.surfaces.push_back({});  // missed
   runs[1].score.noise = {4};
+  runs[0].score.joined = 2;
   runs[0].ms_per_scan = 1.0;
   runs[1].ms_per_scan = 3.0;
   const Summary s = summarise(runs);
@@ -52,6 +53,7 @@ TEST(Summary, CountsAndSharesByHand) {
   EXPECT_EQ(s.correct, 5U);
   EXPECT_EQ(s.missed, 1U);
   EXPECT_EQ(s.noise, 1U);
+  EXPECT_EQ(s.joined, 2U);
   EXPECT_DOUBLE_EQ(s.labelled_share, 0.5);
   EXPECT_DOUBLE_EQ(s.normal_mean_deg, 0.1);
   EXPECT_DOUBLE_EQ(s.normal_max_deg, 0.5);
