@@ -243,6 +243,38 @@ TEST(Config, UnitVectorsAreNormalised) {
   EXPECT_NEAR(config->inputs[0].rotation_wxyz[0], std::sqrt(0.5), 1e-15);
 }
 
+TEST(Config, WhatTheGrpcServerCannotDoIsRefused) {
+  const struct {
+    std::vector<std::string> overrides;
+    const char* problem;
+  } cases[] = {
+      {{"grpc.listen=0.0.0.0:7670"},
+       "--set grpc.listen=0.0.0.0:7670: grpc.listen: 0.0.0.0:7670 can be reached from other machines: it needs "
+       "grpc.tls_certificate and grpc.tls_key (or listen on 127.0.0.1)"},
+      {{"grpc.listen=robot.example.org:1"}, "robot.example.org:1 can be reached from other machines"},
+      {{"grpc.listen=127.0.0.1"},
+       "grpc.listen: '127.0.0.1' is no HOST:PORT: it has no port (for instance 127.0.0.1:7670 or [::1]:7670)"},
+      {{"grpc.listen=127.0.0.1:70000"}, "the port must be a number from 0 to 65535"},
+      {{"grpc.listen='::1:7670'"}, "an IPv6 number needs brackets"},
+      {{"grpc.listen=':7670'"}, "it has no host"},
+      {{"grpc.tls_key=k"}, "grpc.tls_certificate: is missing: certificate and key go together"},
+      {{"grpc.tls_certificate=c"}, "grpc.tls_key: is missing: certificate and key go together"},
+      {{"grpc.tls_client_ca=c"},
+       "grpc.tls_client_ca: needs grpc.tls_certificate and grpc.tls_key: without TLS nobody shows one"},
+      {{"grpc.max_connections=0"}, "grpc.max_connections: 0 is out of range (allowed: 1 to 10000)"},
+  };
+  for (const auto& c : cases) {
+    const auto config = load_overrides(c.overrides);
+    ASSERT_FALSE(config) << c.overrides[0];
+    EXPECT_NE(config.error().message.find(c.problem), std::string::npos) << config.error().message << "\nnot\n"
+                                                                         << c.problem;
+  }
+  for (const char* listen : {"grpc.listen=", "grpc.listen='[::1]:0'", "grpc.listen=localhost:7670"}) {
+    EXPECT_TRUE(load_overrides({listen})) << listen;
+  }
+  EXPECT_TRUE(load_overrides({"grpc.listen=0.0.0.0:7670", "grpc.tls_certificate=c", "grpc.tls_key=k"}));
+}
+
 TEST(Config, UrlGetsAReceiveBufferUnlessItHasOne) {
   const auto url_of = [](const char* url) { return effective_lcm_url({url, 3000000}); };
   EXPECT_EQ(url_of("udpm://239.255.76.67:7667?ttl=0"), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=3000000");

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <sstream>
 #include <thread>
 #include <vector>
@@ -113,6 +115,18 @@ TEST(Counters, EveryScanIsAccountedForAtEveryInstantWhileThreadsRun) {
   EXPECT_EQ(values.at("scans.waiting"), 0);
   EXPECT_EQ(values.at("scans.rejected.checksum"), 43);
   EXPECT_GE(values.at("scans.mapped"), 1);
+}
+
+TEST(ScanQueue, AnInterruptEndsOneWait) {
+  ScanQueue queue(2);
+  std::stop_source stop;
+  queue.push_dropping_oldest(empty_scan(1));
+  queue.interrupt();
+  EXPECT_EQ(queue.pop(stop.get_token()), nullptr);
+  EXPECT_NE(queue.pop(stop.get_token()), nullptr);
+  auto popped = std::async(std::launch::async, [&] { return queue.pop(stop.get_token()); });
+  queue.interrupt();
+  EXPECT_EQ(popped.get(), nullptr);
 }
 
 TEST(MappingService, PublishesASnapshotAfterEachScan) {
@@ -330,6 +344,87 @@ TEST(MappingService, StopCountsWhatWasStillWaiting) {
   }
   EXPECT_EQ(counters.value("scans.waiting"), 0);
   EXPECT_EQ(counters.value("scans.mapped") + counters.value("scans.dropped.shutdown"), 50);
+}
+
+TEST(MappingService, DropsScansWhilePausedAndMapsThemAgain) {
+  Counters counters;
+  std::promise<void> mapped;
+  MappingService mapping(ServiceConfig{}, 1, counters, [&] { mapped.set_value(); });
+  mapping.pause();
+  EXPECT_TRUE(mapping.stats(0.0).is_paused);
+  for (int i = 0; i < 3; ++i) {
+    counters.scan_received();
+    mapping.push(wall_scan(kSecond + i));
+  }
+  EXPECT_EQ(counters.value("scans.dropped.paused"), 3);
+  mapping.resume();
+  EXPECT_FALSE(mapping.is_paused());
+  counters.scan_received();
+  mapping.push(wall_scan(2 * kSecond));
+  mapped.get_future().wait();
+  mapping.stop();
+  EXPECT_EQ(counters.value("scans.mapped"), 1);
+  EXPECT_EQ(unaccounted(counters.values()), 0);
+}
+
+TEST(MappingService, PausingDropsWhatWaits) {
+  Counters counters;
+  std::promise<void> first_mapped;
+  std::promise<void> may_go_on;
+  const auto go_on = may_go_on.get_future().share();
+  std::once_flag once;
+  MappingService mapping(ServiceConfig{}, 1, counters, [&] {
+    std::call_once(once, [&] { first_mapped.set_value(); });
+    go_on.wait();
+  });
+  for (int i = 0; i < 5; ++i) {
+    counters.scan_received();
+    mapping.push(wall_scan(kSecond + i));
+  }
+  first_mapped.get_future().wait();  // and the mapper stands still
+  mapping.pause();
+  EXPECT_EQ(counters.value("scans.dropped.paused"), 4);
+  may_go_on.set_value();
+  mapping.stop();
+  EXPECT_EQ(counters.value("scans.mapped"), 1);
+  EXPECT_EQ(unaccounted(counters.values()), 0);
+}
+
+TEST(MappingService, AResetBeginsAnEmptyMapOfAGreaterEpoch) {
+  Counters counters;
+  std::promise<void> first_mapped;
+  std::once_flag once;
+  MappingService mapping(ServiceConfig{}, 77, counters,
+                         [&] { std::call_once(once, [&] { first_mapped.set_value(); }); });
+  counters.scan_received();
+  mapping.push(wall_scan(kSecond));
+  first_mapped.get_future().wait();
+  EXPECT_EQ(mapping.reset(std::chrono::seconds(30)), 78u);
+  EXPECT_EQ(mapping.snapshot()->epoch(), 78u);
+  EXPECT_EQ(mapping.snapshot()->planes().size(), 0u);
+  EXPECT_EQ(mapping.reset(std::chrono::seconds(30)), 79u);
+  EXPECT_EQ(counters.value("map.resets"), 2);
+}
+
+TEST(MappingService, AMapThatAJumpBeginsAfterAResetIsOfAGreaterEpochStill) {
+  Counters counters;
+  std::promise<void> mapped;
+  std::once_flag once;
+  MappingService mapping(ServiceConfig{}, 77, counters, [&] {
+    if (counters.value("scans.mapped") == 1) std::call_once(once, [&] { mapped.set_value(); });
+  });
+  EXPECT_EQ(mapping.reset(std::chrono::seconds(30)), 78u);
+  counters.scan_received();
+  mapping.push(wall_scan_of_map(1, kSecond));
+  mapped.get_future().wait();
+  EXPECT_EQ(mapping.snapshot()->epoch(), 79u);
+}
+
+TEST(MappingService, AResetGivesUpOnAMapperThatHasEnded) {
+  Counters counters;
+  MappingService mapping(ServiceConfig{}, 77, counters, {});
+  mapping.stop();
+  EXPECT_EQ(mapping.reset(std::chrono::milliseconds(1)), std::nullopt);
 }
 
 }  // namespace
