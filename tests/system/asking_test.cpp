@@ -163,6 +163,23 @@ TEST_F(Asking, WatchTellsEachChangeALine) {
   EXPECT_EQ(endless->wait_for(5s), 0) << endless->output();
 }
 
+TEST_F(Asking, AProgramInCNeedsNothingButTheTypes) {
+  const std::vector<std::string> command = {
+      "env", std::string("LCM_DEFAULT_URL=") + kLcmUrl, program("planemap-c-example"), "0", "0", "0"};
+  ASSERT_NO_FATAL_FAILURE(build_map());
+  const Finished asked = run(command);
+  EXPECT_EQ(asked.exit_code, 0) << asked.err;
+  EXPECT_NE(asked.out.find("surface "), std::string::npos) << asked.out;
+  const auto near = json_of({"nearest", "--point", "0", "0", "0", "--sigma", "0.01", "--count", "3"});
+  for (const auto& plane : near["planes"]) {
+    EXPECT_NE(asked.out.find("plane " + plane["id"].dump() + ": "), std::string::npos) << asked.out;
+  }
+  const Finished wrong =
+      run({"env", std::string("LCM_DEFAULT_URL=") + kLcmUrl, program("planemap-c-example"), "nan", "0", "0"});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_EQ(wrong.err, "planemapd refused: points[0]: point_m: not every coordinate is a finite number\n");
+}
+
 TEST_F(Asking, NoDaemonIsThree) {
   const std::vector<std::vector<std::string>> commands = {
       {"nearest", "--point", "0", "0", "0"},

@@ -120,7 +120,16 @@ TEST_F(Streaming, RedKitchenAtItsOwnSpeedOnOneCoreLosesNothing) {
   EXPECT_EQ(player->wait_for(1s), 0) << player->output();
   expect_every_scan_mapped(kKitchenFrames);
 
+  std::size_t snapshot_bytes = 0;
+  const auto count_bytes = [](const lcm::ReceiveBuffer* page, const std::string& /*channel*/, std::size_t* sum) {
+    *sum += page->data_size;
+  };
+  auto* replies = bus_->lcm().subscribeFunction<std::size_t*>("PLANEMAP_REPLY.*", count_bytes, &snapshot_bytes);
   const nlohmann::json snapshot = ask_for_planes();
+  bus_->listen_for(500ms);
+  bus_->lcm().unsubscribe(replies);
+  EXPECT_GT(snapshot_bytes, 10'000u);
+  EXPECT_LE(snapshot_bytes, 60'000u) << "docs/lcm.md";
   const auto large = std::count_if(snapshot.at("planes").begin(), snapshot.at("planes").end(),
                                    [](const auto& plane) { return plane.at("cellCount").template get<int>() >= 40; });
   EXPECT_GE(large, 20);
