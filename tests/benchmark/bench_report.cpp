@@ -70,7 +70,7 @@ std::vector<BenchReport::Bound> BenchReport::bounds() const {
 }
 
 std::string BenchReport::table() const {
-  std::string text = "                            median    p95    own  / reference  / VoxelGrid\n";
+  std::string text = "                              median    p95    own  / reference  / VoxelGrid\n";
   const auto ratio = [&](const Part& part, const char* other) {
     std::array<char, 32> cell{"            -"};
     if (find(other) != nullptr) {
@@ -80,7 +80,7 @@ std::string BenchReport::table() const {
   };
   for (const Part& part : parts_) {
     std::array<char, 96> row;
-    std::snprintf(row.data(), row.size(), "%-24s %6.2f ms %6.2f %6.2f", part.name.c_str(), median(part.ms),
+    std::snprintf(row.data(), row.size(), "%-26s %6.2f ms %6.2f %6.2f", part.name.c_str(), median(part.ms),
                   p95_ms(part.name), median(part.own_ms));
     text += row.data() + ratio(part, kReference) + ratio(part, kVoxelGrid) + "\n";
   }

@@ -103,7 +103,9 @@ void measure(const Arguments& arguments) {
   if (!arguments.svg.empty()) {
     const std::string what = arguments.dataset.empty() ? "a rendered apartment"
                                                        : std::filesystem::path(arguments.dataset).filename().string();
-    draw_bench(report, std::to_string(frames.size()) + " frames of " + what + "; planemap's bars in its stages",
+    draw_bench(report,
+               std::to_string(frames.size()) + " frames of " + what +
+                   "; planemap's bars: assign, normals, local and global planes, wear, snapshot",
                arguments.svg);
   }
   if (arguments.json) {

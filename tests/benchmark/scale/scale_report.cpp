@@ -108,9 +108,8 @@ void draw_scale(std::span<const ScaleWindow> windows, const std::filesystem::pat
   plot::SvgPage page(960.0, 800.0, "What a scan costs, however large the map",
                      fmt::format("{} scans of a simulated building; medians over {} scans, one thread",
                                  windows.back().scans, windows.front().scans));
-  const Curve time[] = {
-      {"large map", [](const ScaleWindow& w) { return w.own_ms; }},
-      {"a map of 100 m² that takes the same scans", [](const ScaleWindow& w) { return w.twin_own_ms; }}};
+  const Curve time[] = {{"large map, all scans", [](const ScaleWindow& w) { return w.own_ms; }},
+                        {"map of 100 m², 150 of these scans", [](const ScaleWindow& w) { return w.twin_own_ms; }}};
   const Curve ratio[] = {{"large map / map of 100 m²", [](const ScaleWindow& w) { return w.ratio(); }}};
   const Curve memory[] = {{"resident memory", [](const ScaleWindow& w) { return w.rss_mb; }}};
   const Curve snapshot[] = {{"the mapper publishes one", [](const ScaleWindow& w) { return w.publish_own_ms; }},
