@@ -66,7 +66,7 @@ std::vector<Page> all_pages(const std::function<bool(Page&)>& next) {
 }
 
 TEST(Pages, OfASnapshotHoldEveryPlaneOnce) {
-  const auto index = index_of(12000, 5);
+  const auto index = index_of(24000, 5);
   const auto pages = all_pages(snapshot_pages(index, "world", everything(*index)));
   EXPECT_GT(pages.size(), 2u);
   PlaneId next = 1;
@@ -74,7 +74,7 @@ TEST(Pages, OfASnapshotHoldEveryPlaneOnce) {
     EXPECT_GT(page.ByteSizeLong(), page.last() ? 0 : kMaxMessageBytes * 9 / 10);  // none is sent half empty
     for (const auto& plane : page.planes()) EXPECT_EQ(plane.id(), next++);
   }
-  EXPECT_EQ(next, 12001u);
+  EXPECT_EQ(next, 24001u);
 }
 
 TEST(Pages, OfAnEmptyMapAreOne) {
@@ -85,7 +85,7 @@ TEST(Pages, OfAnEmptyMapAreOne) {
 }
 
 TEST(Pages, OfCellsHoldEveryDenseCellOnce) {
-  const auto index = index_of(0, 5, /*blocks=*/100);
+  const auto index = index_of(0, 5, /*blocks=*/200);
   const auto pages = all_pages(cells_pages(index, "world", everything(*index)));
   EXPECT_GT(pages.size(), 2u);
   std::set<std::tuple<int, int, int>> places;
@@ -96,12 +96,12 @@ TEST(Pages, OfCellsHoldEveryDenseCellOnce) {
       places.insert({cell.index_x(), cell.index_y(), cell.index_z()});
     }
   }
-  EXPECT_EQ(cells, 100 * kBlockCells / 2);
+  EXPECT_EQ(cells, 200 * kBlockCells / 2);
   EXPECT_EQ(places.size(), static_cast<std::size_t>(cells));
 }
 
 TEST(Pages, OfARegionHoldPlanesThenCells) {
-  const auto index = index_of(3, 5, /*blocks=*/100);
+  const auto index = index_of(3, 5, /*blocks=*/200);
   RegionContents contents;
   for (const auto& plane : index->queries().planes()) contents.planes.push_back({plane, true, {}, 0.0});
   index->snapshot().for_each_cell([&](const CellView& cell) { contents.cells.push_back(cell); });
@@ -129,7 +129,7 @@ TEST(Pages, APlaneThatFitsInNoneIsCut) {
 
 TEST(Deltas, TooLargeForOneMessageComeInPages) {
   const auto before = index_of(0, 1);
-  const auto index = index_of(12000, 5, 0, before.get());
+  const auto index = index_of(24000, 5, 0, before.get());
   DeltaPages deltas;
   const auto events = deltas.between({7, 1, true}, index);
   ASSERT_NE(events, nullptr);
@@ -143,7 +143,7 @@ TEST(Deltas, TooLargeForOneMessageComeInPages) {
     EXPECT_EQ(event.delta().last(), i + 1 == events->size());
     for (const auto& plane : event.delta().changed()) EXPECT_EQ(plane.id(), next++);
   }
-  EXPECT_EQ(next, 12001u);
+  EXPECT_EQ(next, 24001u);
   EXPECT_EQ(deltas.between({7, 1, true}, index), events) << "made once for all who stand there";
   EXPECT_EQ(deltas.between({7, 5, true}, index), nullptr) << "nothing has changed";
 }
