@@ -13,10 +13,6 @@ namespace planemap {
 
 namespace {
 
-/// A plane looks for pieces across a gap when it has grown by a tenth, and at the latest after so many scans that touch
-/// it: its fit gets better without growth.
-constexpr int kBridgingScans = 10;
-
 /// What a pose's error adds to the bands about planes. Where poses err by more than the distance at which planes are
 /// told apart, no band holds a surface together without taking in the cells of others. A filter that drifts says so of
 /// itself in the end, though scans that follow each other fit well.
@@ -65,15 +61,6 @@ bool PlaneMap::agree(const PlaneStatistics& a, const PlaneFit& fit_a, const Plan
   const PlaneFit& larger = a_is_smaller ? fit_b : fit_a;
   const double excess_m2 = smaller.mean_square_distance_m2(larger.plane) - own.residual_m2;
   return excess_m2 < max_offset_m * max_offset_m;
-}
-
-bool PlaneMap::are_creased(const PlaneStatistics& a, const PlaneFit& fit_a, const PlaneStatistics& b,
-                           const PlaneFit& fit_b) const {
-  if (!config_.splits || !is_pure(a, fit_a) || !is_pure(b, fit_b)) return false;
-  constexpr double kSigmas = 3.0;
-  const double sigma_rad = std::sqrt(fit_a.tilt_1_rad2 + fit_b.tilt_1_rad2);
-  const double angle_rad = std::acos(std::min(1.0, fit_a.plane.normal().dot(fit_b.plane.normal())));
-  return angle_rad > config_.crease_angle_deg * kRadPerDeg + kSigmas * sigma_rad;
 }
 
 /// Adds the planes of cells to touching_.
@@ -149,41 +136,6 @@ PlaneSlot PlaneMap::merge_planes(UncertainGrid& grid, PlaneSlot a, PlaneSlot b) 
   refit(survivor);
   mark_changed(survivor);
   return survivor;
-}
-
-bool PlaneMap::is_pure(const PlaneStatistics& statistics, const PlaneFit& fit) const {
-  // A cell across a corner scatters about its chord by a tenth of its edge: only less noise than that tells it from one
-  // that is flat.
-  constexpr double kMostNoise = 0.075;
-  constexpr double kPureSigmas = 1.2;
-  const double variance_m2 = statistics.evidence_variance_m2() + pose_variance_m2_;
-  const double most_m = kMostNoise * grid_config_.cell_size_m;
-  return variance_m2 < most_m * most_m &&
-         fit.residual_m2 < kPureSigmas * kPureSigmas * variance_m2 + config_.core_floor_m * config_.core_floor_m;
-}
-
-bool PlaneMap::is_nearer(const UncertainGrid& grid, CellRef ref, const PlaneFit& a, const PlaneFit& b) const {
-  const Moments evidence = grid.cell(ref).evidence.unpacked();
-  const Eigen::Vector3d centre_m = grid.geometric_centre_m(ref);
-  const auto scatter_m2 = [&](const PlaneFit& fit) {
-    return evidence.mean_square_distance(fit.plane.normal(), fit.plane.signed_distance_m(centre_m));
-  };
-  return scatter_m2(a) < scatter_m2(b);
-}
-
-std::span<const CellRef> PlaneMap::free_cells(const UncertainGrid& grid, const LocalPlane& local) {
-  free_.clear();
-  PlaneSlot last = kNoSlot;
-  bool creased = false;
-  for (const CellRef ref : local.cells) {
-    const PlaneSlot slot = grid.cell(ref).plane;
-    if (slot != last && slot != kNoSlot) {
-      creased = are_creased(local.statistics, local.fit, state(slot).statistics, state(slot).fit);
-    }
-    last = slot;
-    if (slot == kNoSlot || (creased && is_nearer(grid, ref, local.fit, state(slot).fit))) free_.push_back(ref);
-  }
-  return free_;
 }
 
 void PlaneMap::start(UncertainGrid& grid, const LocalPlane& local, std::int64_t utime, GlobalReport& report) {
@@ -293,34 +245,6 @@ PlaneSlot PlaneMap::best_neighbour(const UncertainGrid& grid, CellRef ref, std::
   return best;
 }
 
-PlaneSlot PlaneMap::better_neighbour(const UncertainGrid& grid, CellRef ref, std::span<const CellRef> around) const {
-  constexpr double kNearer_m = 0.003;  // more than flat planes err by
-  constexpr double kSigmas = 3.0;
-  const Cell& cell = grid.cell(ref);
-  if (!config_.splits || cell.plane == kNoSlot || !cell.has_evidence()) return kNoSlot;
-  const double variance_m2 = cell.evidence_variance_m2();
-  if (is_layered(variance_m2, grid.cell_size_m())) return kNoSlot;
-  const double sigma_m = std::sqrt(variance_m2 / static_cast<double>(cell.evidence_count) + pose_variance_m2_);
-  const Eigen::Vector3d mean_m = grid.geometric_centre_m(ref) + cell.evidence.unpacked().mean();
-  const auto is_flat = [&](PlaneSlot slot) { return is_pure(state(slot).statistics, state(slot).fit); };
-  const Plane& own = state(cell.plane).fit.plane;
-  double least_m = std::abs(own.signed_distance_m(mean_m)) - kNearer_m - kSigmas * sigma_m;
-  if (least_m <= 0.0 || !is_flat(cell.plane)) return kNoSlot;
-  PlaneSlot best = kNoSlot;
-  PlaneSlot last = cell.plane;
-  for (const CellRef other : around) {
-    const PlaneSlot slot = grid.cell(other).plane;
-    if (slot == kNoSlot || slot == last || slot == cell.plane || is_sibling(grid, ref, slot)) continue;
-    last = slot;
-    const Plane& plane = state(slot).fit.plane;
-    const double distance_m = std::abs(plane.signed_distance_m(mean_m));
-    if (distance_m >= least_m || plane.normal().dot(own.normal()) < alike_cosine_ || !is_flat(slot)) continue;
-    least_m = distance_m;
-    best = slot;
-  }
-  return best;
-}
-
 void PlaneMap::adopt(UncertainGrid& grid, std::span<const CellChange> changes, const Neighbourhoods& neighbourhoods) {
   for (std::uint32_t i = 0; i < changes.size(); ++i) {
     const CellChange& change = changes[i];
@@ -371,56 +295,6 @@ void PlaneMap::settle(UncertainGrid& grid, PlaneSlot slot, GlobalReport& report)
   }
 }
 
-/// A piece across a gap from where the scan looks: the work does not grow with the plane, and the plane grows nowhere
-/// else.
-PlaneSlot PlaneMap::bridge_partner(const UncertainGrid& grid, std::span<const CellChange> changes, PlaneSlot slot) {
-  const State& plane = state(slot);
-  cubes_.clear();
-  near_.clear();
-  for (const CellChange& change : changes) {
-    if (grid.cell(change.cell).plane != slot) continue;
-    const Eigen::Vector3d centre_m = grid.geometric_centre_m(change.cell);
-    const std::uint64_t key = coarse_.key_of(centre_m);
-    if (!cubes_.empty() && cubes_.back() == key) continue;
-    if (std::find(cubes_.begin(), cubes_.end(), key) != cubes_.end()) continue;
-    cubes_.push_back(key);
-    coarse_.planes_near(centre_m, 2, near_);
-  }
-  sort_unique(near_);
-  for (const PlaneSlot other : near_) {
-    if (other == slot) continue;
-    const State& partner = state(other);
-    // Two tables of one height are two tables: only pieces that are large against the gap are taken for one surface.
-    if (std::min(plane.statistics.cells_extent_m(), partner.statistics.cells_extent_m()) < 2.0 * config_.bridge_gap_m)
-      continue;
-    if (agree(plane.statistics, plane.fit, partner.statistics, partner.fit, config_.bridge_angle_deg * kRadPerDeg,
-              0.5 * config_.plane_offset_m)) {
-      return other;
-    }
-  }
-  return kNoSlot;
-}
-
-void PlaneMap::bridge(UncertainGrid& grid, std::span<const CellChange> changes, GlobalReport& report) {
-  candidates_ = touched_;
-  for (PlaneSlot slot : candidates_) {
-    while (states_[slot]) {
-      State& plane = state(slot);
-      const std::size_t cells = plane.statistics.cell_count();
-      const bool grown = static_cast<double>(cells) >= 1.1 * static_cast<double>(plane.cells_when_bridged);
-      if (!grown && ++plane.scans_since_bridged < kBridgingScans) break;
-      const PlaneSlot partner = bridge_partner(grid, changes, slot);
-      if (partner == kNoSlot) {
-        plane.cells_when_bridged = cells;
-        plane.scans_since_bridged = 0;
-        break;
-      }
-      slot = merge_planes(grid, slot, partner);
-      ++report.merged_planes;
-    }
-  }
-}
-
 void PlaneMap::dissolve_small(UncertainGrid& grid, GlobalReport& report) {
   candidates_ = touched_;
   for (const PlaneSlot slot : candidates_) {
@@ -437,57 +311,6 @@ void PlaneMap::dissolve(UncertainGrid& grid, PlaneSlot slot) {
   }
   removed_.push_back({id_of(slot), kNoPlane, 0});
   states_[slot].reset();
-}
-
-// Records for readers.
-
-void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) const {
-  const State& plane = state(slot);
-  record.id = id_of(slot);
-  record.plane = plane.fit.plane;
-  // The weight that the fit was made from: a plane whose core cells have all left stands as it was last fitted.
-  Eigen::Matrix3d covariance = sensor_covariance(plane.fit, config_.offset_floor_m);
-  if (poses_err_) {
-    covariance += plane.pose_evidence.covariance(plane.fit, plane.statistics.origin_m(), last_pose_);
-  }
-  record.covariance = covariance_of(plane.fit, covariance);
-  record.centroid_m = plane.fit.centroid_m;
-  record.cell_count = static_cast<std::uint32_t>(plane.statistics.cell_count());
-  record.point_count = static_cast<std::uint64_t>(plane.statistics.point_count());
-  record.first_seen_utime = plane.first_seen_utime;
-  record.last_seen_utime = plane.last_seen_utime;
-  record.quality = plane.statistics.core_point_count() / std::max(plane.statistics.point_count(), 1.0);
-  record.revision = revision;
-  record.merged = plane.merged;
-}
-
-bool PlaneMap::update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
-                              std::vector<RemovedPlane>& removed) {
-  if (!changed()) return false;
-  const auto id_less = [](const std::shared_ptr<const PlaneRecord>& r, PlaneId id) { return r->id < id; };
-  for (RemovedPlane gone : removed_) {
-    const auto at = std::lower_bound(records.begin(), records.end(), gone.id, id_less);
-    if (at == records.end() || (*at)->id != gone.id) continue;  // no reader ever saw it
-    records.erase(at);
-    gone.revision = revision;
-    removed.push_back(gone);
-  }
-  sort_unique(dirty_);
-  for (const PlaneSlot slot : dirty_) {
-    if (!states_[slot]) continue;
-    state(slot).dirty = false;
-    const std::shared_ptr<PlaneRecord> record = record_pool_.take();
-    write_record(slot, revision, *record);
-    const auto at = std::lower_bound(records.begin(), records.end(), record->id, id_less);
-    if (at != records.end() && (*at)->id == record->id) {
-      *at = record;
-    } else {
-      records.insert(at, record);
-    }
-  }
-  dirty_.clear();
-  removed_.clear();
-  return true;
 }
 
 }  // namespace planemap
