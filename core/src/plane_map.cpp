@@ -6,8 +6,6 @@
 #include <limits>
 
 #include "angles.hpp"
-#include "planemap/membership.hpp"
-#include "sort_unique.hpp"
 
 namespace planemap {
 
