@@ -223,14 +223,14 @@ TEST(CallGuard, WithoutTokensAdminIsForTheLoopback) {
   const CallGuard guard;
   for (const char* peer : {"ipv4:127.0.0.1:4711", "ipv4:127.8.9.1:1", "ipv6:%5B::1%5D:4711", "ipv6:[::1]:4711",
                            "ipv6:%5B::ffff:127.0.0.1%5D:4711"}) {
-    EXPECT_EQ(guard.check(Scope::kAdmin, "", peer).refusal, Refusal::kNone) << peer;
+    EXPECT_EQ(guard.check(Scope::kAdmin, "", peer).denial, Denial::kNone) << peer;
   }
   for (const char* peer : {"ipv4:10.0.0.1:4711", "ipv6:%5B2001:db8::1%5D:4711", "ipv6:%5B::ffff:10.0.0.1%5D:4711", "",
                            "unix:", "ipv4:127.0.0.1.example.org:1"}) {
     const auto verdict = guard.check(Scope::kAdmin, "", peer);
-    EXPECT_EQ(verdict.refusal, Refusal::kPermissionDenied) << peer;
+    EXPECT_EQ(verdict.denial, Denial::kPermissionDenied) << peer;
     EXPECT_NE(verdict.message.find("this call needs a token of scope admin"), std::string::npos);
-    EXPECT_EQ(guard.check(Scope::kRead, "", peer).refusal, Refusal::kNone) << peer;
+    EXPECT_EQ(guard.check(Scope::kRead, "", peer).denial, Denial::kNone) << peer;
   }
 }
 

@@ -83,19 +83,19 @@ Verdict CallGuard::check(Scope needed, std::string_view authorization, const std
   if (scopes_.empty()) {
     if (needed < Scope::kAdmin || is_loopback_peer(peer)) return {};
     return {
-        Refusal::kPermissionDenied,
+        Denial::kPermissionDenied,
         "this call needs a token of scope admin, and the server has none (grpc.token_file); without tokens it is for "
         "callers on the server's loopback"};
   }
   if (authorization.empty()) {
-    return {Refusal::kUnauthenticated,
+    return {Denial::kUnauthenticated,
             fmt::format("this call needs a token of scope {}: send 'authorization: Bearer TOKEN'", name_of(needed))};
   }
   const bool is_bearer = authorization.substr(0, kBearer.size()) == kBearer;
   const Scope scope = is_bearer ? scope_of(authorization.substr(kBearer.size())) : Scope::kNone;
-  if (scope == Scope::kNone) return {Refusal::kUnauthenticated, "the token is not known"};
+  if (scope == Scope::kNone) return {Denial::kUnauthenticated, "the token is not known"};
   if (scope < needed) {
-    return {Refusal::kPermissionDenied,
+    return {Denial::kPermissionDenied,
             fmt::format("the token is of scope {}, this call needs {}", name_of(scope), name_of(needed))};
   }
   return {};

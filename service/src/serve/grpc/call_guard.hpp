@@ -11,10 +11,10 @@ namespace planemap::service {
 enum class Scope { kNone, kRead, kAdmin };
 
 /// Why a call is not let in.
-enum class Refusal { kNone, kUnauthenticated, kPermissionDenied };
+enum class Denial { kNone, kUnauthenticated, kPermissionDenied };
 
 struct Verdict {
-  Refusal refusal = Refusal::kNone;
+  Denial denial = Denial::kNone;
   std::string message;  ///< for the caller; names no token
 };
 

@@ -39,12 +39,12 @@ grpc::Status CallDesk::admit(const grpc::CallbackServerContext& context, Scope n
   const std::string_view authorization =
       found == metadata.end() ? std::string_view() : std::string_view(found->second.data(), found->second.size());
   const Verdict verdict = guard.check(needed, authorization, context.peer());
-  switch (verdict.refusal) {
-    case Refusal::kNone:
+  switch (verdict.denial) {
+    case Denial::kNone:
       return grpc::Status::OK;
-    case Refusal::kUnauthenticated:
+    case Denial::kUnauthenticated:
       return {grpc::StatusCode::UNAUTHENTICATED, verdict.message};
-    case Refusal::kPermissionDenied:
+    case Denial::kPermissionDenied:
       break;
   }
   return {grpc::StatusCode::PERMISSION_DENIED, verdict.message};
