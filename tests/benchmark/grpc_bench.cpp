@@ -19,7 +19,7 @@
 #include "bench_frames.hpp"
 #include "mapping/mapping_service.hpp"
 #include "serve/grpc/grpc_server.hpp"
-#include "stopwatch.hpp"
+#include "common/stopwatch.hpp"
 
 namespace planemap::benchmark {
 namespace {
