@@ -23,19 +23,19 @@ std::span<const LocalPlane> LocalPlaneExtractor::extract(const UncertainGrid& gr
                                                          const Neighbourhoods& neighbourhoods) {
   list_candidates(grid, changes, neighbourhoods);
   sort_seeds();
-  plane_count_ = 0;
+  growing_.clear();
   visitor_ = 0;
   aside_.clear();
   if (config_.splits) {
     // What lies aside of a plane is kept out of it where it makes a plane of its own. Else the plane takes it, too: a
     // real sensor bends what is flat.
     grow_all(grid, changes, true);
-    for (std::size_t number = 0; number < plane_count_; ++number) release_small(number);
+    for (Growing& plane : growing_) release_small(plane);
     for (const auto& [number, change] : aside_) take_aside(grid, changes, change, number);
   }
   grow_all(grid, changes, false);
-  leave_out_those_without_fit();
-  return {planes_.data(), plane_count_};
+  list_planes(changes);
+  return planes_;
 }
 
 void LocalPlaneExtractor::list_candidates(const UncertainGrid& grid, std::span<const CellChange> changes,
@@ -76,53 +76,46 @@ void LocalPlaneExtractor::sort_seeds() {
 void LocalPlaneExtractor::grow_all(const UncertainGrid& grid, std::span<const CellChange> changes, bool strict) {
   for (const std::uint32_t seed : seeds_) {
     if (candidates_[seed].visitor == kTaken) continue;
-    grow(grid, changes, start(grid, changes[seed].cell, seed), 0, strict);
+    grow(grid, changes, start(grid, changes, seed), seed, strict);
   }
 }
 
-std::size_t LocalPlaneExtractor::start(const UncertainGrid& grid, CellRef first, std::uint32_t change) {
-  const std::size_t number = plane_count_++;
-  const PlaneStatistics none(grid.geometric_centre_m(first));
-  if (number == planes_.size()) {
-    planes_.push_back({none, {}, {}});
-    members_.emplace_back();
-  }
-  LocalPlane& plane = planes_[number];
-  plane.statistics = none;
-  plane.fit = {};
-  plane.cells.clear();
-  members_[number].clear();
+std::size_t LocalPlaneExtractor::start(const UncertainGrid& grid, std::span<const CellChange> changes,
+                                       std::uint32_t change) {
+  const CellRef first = changes[change].cell;
+  Growing& plane = growing_.emplace_back(Growing{PlaneStatistics(grid.geometric_centre_m(first)), {}});
   // The plane starts as its first cell: its normal, through its virtual centre.
   const Candidate& seed = candidates_[change];
   plane.fit.plane = Plane::through(seed.middle_m, seed.normal);
   plane.fit.deviation_rad = seed.deviation_rad;
   ++visitor_;
-  take(grid, first, change, number);
-  return number;
+  take(grid, first, change, plane);
+  return growing_.size() - 1;
 }
 
-void LocalPlaneExtractor::take(const UncertainGrid& grid, CellRef ref, std::uint32_t change, std::size_t number) {
+void LocalPlaneExtractor::take(const UncertainGrid& grid, CellRef ref, std::uint32_t change, Growing& plane) {
   candidates_[change].visitor = kTaken;
-  planes_[number].statistics.add_whole(grid.cell(ref), grid.geometric_centre_m(ref));
-  planes_[number].cells.push_back(ref);
-  members_[number].push_back(change);
+  candidates_[change].next = kNone;
+  (plane.size == 0 ? plane.first : candidates_[plane.last].next) = change;
+  plane.last = change;
+  ++plane.size;
+  plane.statistics.add_whole(grid.cell(ref), grid.geometric_centre_m(ref));
 }
 
-void LocalPlaneExtractor::release_small(std::size_t number) {
-  LocalPlane& plane = planes_[number];
-  if (static_cast<double>(plane.cells.size()) >= config_.min_cells) return;
-  for (const std::uint32_t change : members_[number]) candidates_[change].visitor = 0;
-  plane.cells.clear();
+void LocalPlaneExtractor::release_small(Growing& plane) {
+  if (static_cast<double>(plane.size) >= config_.min_cells) return;
+  for (std::uint32_t i = plane.first; i != kNone; i = candidates_[i].next) candidates_[i].visitor = 0;
+  plane.size = 0;
 }
 
 void LocalPlaneExtractor::take_aside(const UncertainGrid& grid, std::span<const CellChange> changes,
                                      std::uint32_t change, std::size_t number) {
-  const LocalPlane& plane = planes_[number];
+  Growing& plane = growing_[number];
   const Candidate& cell = candidates_[change];
-  if (plane.cells.empty() || cell.visitor == kTaken || !similar(cell, plane.fit)) return;
+  if (plane.size == 0 || cell.visitor == kTaken || !similar(cell, plane.fit)) return;
   ++visitor_;
-  take(grid, changes[change].cell, change, number);
-  grow(grid, changes, number, plane.cells.size() - 1, false);
+  take(grid, changes[change].cell, change, plane);
+  grow(grid, changes, number, change, false);
 }
 
 bool LocalPlaneExtractor::similar(const Candidate& cell, const PlaneFit& plane) const {
@@ -134,16 +127,16 @@ bool LocalPlaneExtractor::similar(const Candidate& cell, const PlaneFit& plane) 
 }
 
 void LocalPlaneExtractor::grow(const UncertainGrid& grid, std::span<const CellChange> changes, std::size_t number,
-                               std::size_t from, bool strict) {
-  LocalPlane& plane = planes_[number];
+                               std::uint32_t from, bool strict) {
+  Growing& plane = growing_[number];
   // Fewer cells tilt more than the first cell's normal does; later a fit that gained an eighth is as good as any.
   const auto next_refit = [&](std::size_t cells) {
     return config_.pooled_refit ? std::max<std::size_t>(6, cells + 1 + cells / 8) : cells + 1;
   };
-  std::size_t refit_at = plane.cells.size() == 1 ? (config_.pooled_refit ? 6 : 1) : next_refit(plane.cells.size());
-  for (std::size_t next = from; next < plane.cells.size(); ++next) {
-    const Candidate& at = candidates_[members_[number][next]];
-    for (std::uint32_t i = at.first_neighbour; i < at.last_neighbour; ++i) {
+  std::size_t refit_at = plane.size == 1 ? (config_.pooled_refit ? 6 : 1) : next_refit(plane.size);
+  for (std::uint32_t at = from; at != kNone; at = candidates_[at].next) {
+    const std::uint32_t end = candidates_[at].last_neighbour;
+    for (std::uint32_t i = candidates_[at].first_neighbour; i < end; ++i) {
       const std::uint32_t change = neighbours_[i];
       Candidate& other = candidates_[change];
       if (other.visitor == kTaken || other.visitor == visitor_) continue;
@@ -156,25 +149,27 @@ void LocalPlaneExtractor::grow(const UncertainGrid& grid, std::span<const CellCh
         aside_.emplace_back(number, change);
         continue;
       }
-      take(grid, ref, change, number);
-      if (plane.cells.size() < refit_at) continue;
+      take(grid, ref, change, plane);
+      if (plane.size < refit_at) continue;
       if (const auto fit = plane.statistics.fit(config_.pooled_refit)) plane.fit = *fit;
-      refit_at = next_refit(plane.cells.size());
+      refit_at = next_refit(plane.size);
     }
   }
 }
 
-void LocalPlaneExtractor::leave_out_those_without_fit() {
-  std::size_t kept = 0;
-  for (std::size_t number = 0; number < plane_count_; ++number) {
-    LocalPlane& plane = planes_[number];
-    const auto fit = plane.cells.empty() ? std::nullopt : plane.statistics.fit(config_.pooled_refit);
+/// Those that span a plane, and their cells one after another.
+void LocalPlaneExtractor::list_planes(std::span<const CellChange> changes) {
+  planes_.clear();
+  cells_.clear();
+  // Each cell is in one plane at most: the spans hold.
+  if (cells_.capacity() < changes.size()) cells_.reserve(2 * changes.size());
+  for (const Growing& plane : growing_) {
+    const auto fit = plane.size == 0 ? std::nullopt : plane.statistics.fit(config_.pooled_refit);
     if (!fit) continue;
-    plane.fit = *fit;
-    if (kept != number) std::swap(planes_[kept], plane);  // both keep their memory
-    ++kept;
+    const std::size_t begin = cells_.size();
+    for (std::uint32_t i = plane.first; i != kNone; i = candidates_[i].next) cells_.push_back(changes[i].cell);
+    planes_.push_back({plane.statistics, *fit, std::span(cells_).subspan(begin)});
   }
-  plane_count_ = kept;
 }
 
 }  // namespace planemap

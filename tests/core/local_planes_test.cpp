@@ -17,14 +17,15 @@ using Eigen::Vector3d;
 /// The steps of Fig. 3 up to the local planes, on one look at the walls.
 struct OneScan {
   OneScan(const std::vector<testing::Wall>& walls, const Eigen::Isometry3d& T, const MapperConfig& config)
-      : grid(config.grid.cell_size_m), assigner(config.core, config.sensor, config.grid) {
+      : grid(config.grid.cell_size_m),
+        assigner(config.core, config.sensor, config.grid),
+        extractor(config.grid, config.normals, config.planes) {
     assigner.assign(grid, testing::render(walls, T, 1), T);
     NormalEstimator normals(config.normals);
     testing::commit(grid, assigner.changes());
     for (const CellChange& change : assigner.changes()) normals.refresh(grid, change.cell);
     Neighbourhoods neighbourhoods;
     neighbourhoods.gather(grid, assigner.changes());
-    LocalPlaneExtractor extractor(config.grid, config.normals, config.planes);
     const auto found = extractor.extract(grid, assigner.changes(), neighbourhoods);
     planes.assign(found.begin(), found.end());
     std::sort(planes.begin(), planes.end(),
@@ -33,6 +34,7 @@ struct OneScan {
 
   UncertainGrid grid;
   Assigner assigner;
+  LocalPlaneExtractor extractor;
   std::vector<LocalPlane> planes;
 };
 

@@ -100,7 +100,9 @@ class LossyNetwork : public SystemTest {
     const auto end = std::chrono::steady_clock::now() + 90s;
     bool is_done = false;
     while (!is_done) {
-      ASSERT_LT(std::chrono::steady_clock::now(), end) << "the mirror does not catch up";
+      ASSERT_LT(std::chrono::steady_clock::now(), end)
+          << "the mirror of epoch " << watch.map().epoch << " revision " << watch.map().revision
+          << " does not catch up; the bridge " << (kinect.running() ? "is still playing" : "has ended");
       const auto change = watch.next(200ms);
       ASSERT_TRUE(change) << change.error().message;
       EXPECT_EQ(change->revision, watch.map().revision);

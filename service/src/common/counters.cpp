@@ -8,25 +8,30 @@ Counters::Counters() : values_{{"scans.received", 0}, {"scans.mapped", 0}, {"sca
 
 void Counters::scan_received() {
   const std::lock_guard lock(mutex_);
-  ++values_["scans.received"];
-  ++values_["scans.waiting"];
+  ++count_of("scans.received");
+  ++count_of("scans.waiting");
 }
 
-void Counters::scan_leaves(const std::string& name) {
-  auto& waiting = values_["scans.waiting"];
+std::int64_t& Counters::count_of(std::string_view name) {
+  const auto found = values_.find(name);
+  return found != values_.end() ? found->second : values_[std::string(name)];
+}
+
+void Counters::scan_leaves(std::string_view name) {
+  auto& waiting = count_of("scans.waiting");
   assert(waiting > 0 && "a scan left that was never received");
   --waiting;
-  ++values_[name];
+  ++count_of(name);
 }
 
 void Counters::scan_mapped(const PointCounts& points) {
   const std::lock_guard lock(mutex_);
   scan_leaves("scans.mapped");
-  values_["points.total"] += static_cast<std::int64_t>(points.total);
-  values_["points.mapped"] += static_cast<std::int64_t>(points.mapped);
-  values_["points.no_return"] += static_cast<std::int64_t>(points.no_return);
-  values_["points.out_of_range"] += static_cast<std::int64_t>(points.out_of_range);
-  values_["points.invalid"] += static_cast<std::int64_t>(points.invalid);
+  count_of("points.total") += static_cast<std::int64_t>(points.total);
+  count_of("points.mapped") += static_cast<std::int64_t>(points.mapped);
+  count_of("points.no_return") += static_cast<std::int64_t>(points.no_return);
+  count_of("points.out_of_range") += static_cast<std::int64_t>(points.out_of_range);
+  count_of("points.invalid") += static_cast<std::int64_t>(points.invalid);
 }
 
 void Counters::scan_dropped(const std::string& reason) {
@@ -41,17 +46,17 @@ void Counters::scan_rejected(const std::string& reason) {
 
 void Counters::add(const std::string& name, std::int64_t by) {
   const std::lock_guard lock(mutex_);
-  values_[name] += by;
+  count_of(name) += by;
 }
 
 void Counters::set(const std::string& name, std::int64_t value) {
   const std::lock_guard lock(mutex_);
-  values_[name] = value;
+  count_of(name) = value;
 }
 
 CounterValues Counters::values() const {
   const std::lock_guard lock(mutex_);
-  return values_;
+  return {values_.begin(), values_.end()};
 }
 
 std::int64_t Counters::value(const std::string& name) const {

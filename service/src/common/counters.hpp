@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <planemap/scan.hpp>
@@ -29,10 +30,12 @@ class Counters {
   std::int64_t value(const std::string& name) const;  ///< 0 where nothing of that name was counted
 
  private:
-  void scan_leaves(const std::string& name);
+  void scan_leaves(std::string_view name);
+  /// Its count, from 0 where nothing of that name was counted yet; then only does it allocate.
+  std::int64_t& count_of(std::string_view name);
 
   mutable std::mutex mutex_;
-  CounterValues values_;
+  std::map<std::string, std::int64_t, std::less<>> values_;  ///< looked up without making a string
 };
 
 }  // namespace planemap::service

@@ -35,7 +35,8 @@ std::int64_t Bus::counters_beginning(const std::string& prefix) const {
 
 std::string Bus::describe() const {
   if (!status_) return "no status was heard";
-  std::string text = "planes " + std::to_string(status_->plane_count) + ", idle: '" + status_->idle_reason + "'\n";
+  std::string text = "revision " + std::to_string(status_->revision) + ", planes " +
+                     std::to_string(status_->plane_count) + ", idle: '" + status_->idle_reason + "'\n";
   for (const planemap_lcm::counter_t& counter : status_->counters) {
     text += "  " + counter.name + " " + std::to_string(counter.value) + "\n";
   }
