@@ -44,7 +44,10 @@ void LcmMapWatch::on_delta(const lcm::ReceiveBuffer* buffer, const std::string& 
     auto page = decode_delta(bytes_of(buffer));
     if (!page) return requester_.note_malformed(page.error());
     heard_at_ = Clock::now();
-    expect({page->epoch, page->revision}, heard_at_ + requester_.options().lost_page_after);
+    const MapVersion version{page->epoch, page->revision};
+    const bool is_coming = due_ && due_->version.epoch == version.epoch && due_->version.revision == version.revision;
+    if (is_coming) due_.reset();  // each page of it gives those behind it time
+    expect(version, heard_at_ + requester_.options().lost_page_after);
     if (auto delta = collector_.add(std::move(*page))) {
       if (waiting_.size() == kMostWaiting) waiting_.pop_front();
       waiting_.push_back(std::move(*delta));
@@ -65,14 +68,13 @@ void LcmMapWatch::on_status(const lcm::ReceiveBuffer* buffer, const std::string&
   }
 }
 
-/// Notes that there is a revision, and until when it must have come. The first one that is missing counts: while
-/// mapping goes on there always is a later one.
+/// Notes that there is a revision, and until when it must have come. The first one that is missing counts, and the
+/// first time that it was told of: news of it may come more often than it is waited for.
 void LcmMapWatch::expect(MapVersion version, Clock::time_point until) {
   if (!mirror_.has_map()) return;
   const bool is_known = version.epoch == mirror_.map().epoch && version.revision <= mirror_.map().revision;
   if (is_known) return;
-  const bool is_due = due_ && due_->version.epoch == version.epoch && due_->version.revision == version.revision;
-  if (!due_ || is_due) due_ = Due{version, until};
+  if (!due_) due_ = Due{version, until};
 }
 
 /// Applies the deltas that connect to what is known; until one of them changes something.
