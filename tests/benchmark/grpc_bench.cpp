@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "bench_frames.hpp"
+#include "common/stopwatch.hpp"
 #include "mapping/mapping_service.hpp"
 #include "serve/grpc/grpc_server.hpp"
-#include "common/stopwatch.hpp"
 
 namespace planemap::benchmark {
 namespace {

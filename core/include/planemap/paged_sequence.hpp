@@ -10,9 +10,9 @@
 
 namespace planemap {
 
-/// A sequence that grows at its end, and is shared with readers page by page: that costs a pointer for every 64 elements,
-/// and the first change of a page after that a copy of the page. Many threads may read what was shared while one
-/// changes the original. What was moved from is good for nothing but being destroyed.
+/// A sequence that grows at its end, and is shared with readers page by page: that costs a pointer for every 64
+/// elements, and the first change of a page after that a copy of the page. Many threads may read what was shared while
+/// one changes the original. What was moved from is good for nothing but being destroyed.
 template <class T>
 class PagedSequence {
  public:

@@ -75,8 +75,8 @@ class UncertainGrid {
   template <class Visit>
   void for_each_cell(Visit&& visit) const;
 
-  /// Makes a table that of the blocks as they are now, in the order in which they were made; they are copied before they
-  /// change again. Takes the memory that the table has.
+  /// Makes a table that of the blocks as they are now, in the order in which they were made; they are copied before
+  /// they change again. Takes the memory that the table has.
   void share(BlockTable& table);
 
  private:
@@ -107,11 +107,11 @@ class UncertainGrid {
   double inverse_cell_size_;
   std::size_t cell_count_ = 0;
   std::unordered_map<BlockIndex, std::uint32_t, IndexHash> slots_;
-  BlockTable table_;            ///< holds the blocks, and is what readers get
-  std::vector<Block*> blocks_;  ///< the same
+  BlockTable table_;                          ///< holds the blocks, and is what readers get
+  std::vector<Block*> blocks_;                ///< the same
   std::vector<std::uint64_t> written_since_;  ///< by slot: value of shares_ when the block was made or copied
   std::uint64_t shares_ = 0;                  ///< how often the blocks were shared
-  std::vector<Pool<Block>> pools_;            ///< by room: of equal ones, so that memory does not grow by being passed on
+  std::vector<Pool<Block>> pools_;  ///< by room: of equal ones, so that memory does not grow by being passed on
   std::vector<std::array<std::uint32_t, 27>> neighbours_;  ///< slots of the blocks around each block
 };
 

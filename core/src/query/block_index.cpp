@@ -5,8 +5,7 @@
 
 namespace planemap {
 
-BlockIndexTable::BlockIndexTable(const BlockTable& blocks)
-    : entries_(std::bit_ceil(2 * blocks.size() + 1)) {
+BlockIndexTable::BlockIndexTable(const BlockTable& blocks) : entries_(std::bit_ceil(2 * blocks.size() + 1)) {
   in_order_.reserve(blocks.size());
   for (const auto& block : blocks) {
     const BlockIndex& index = block->index();
