@@ -92,7 +92,8 @@ class Pool {
     template <class V>
     Allocator(const Allocator<V>& other) : shelf(other.shelf) {}  // NOLINT(google-explicit-constructor)
     U* allocate(std::size_t) {
-      static_assert(sizeof(U) <= sizeof(Control) && alignof(U) <= alignof(Control));
+      static_assert(sizeof(U) <= kControlBytes);
+      static_assert(alignof(U) <= alignof(std::max_align_t));
       return reinterpret_cast<U*>(shelf->take_control().release());
     }
     void deallocate(U* control, std::size_t) {

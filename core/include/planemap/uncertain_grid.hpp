@@ -131,7 +131,8 @@ void UncertainGrid::for_each_neighbour(CellRef ref, int depth, Visit&& visit) co
       for (int dx = -depth; dx <= depth;) {
         const int first = x + dx;
         const int last = std::min(x + depth, first | kMask);  // in the same block
-        const std::uint32_t slot = around[static_cast<std::size_t>((first >> kBlockBits) + 1 + beside)];
+        const int towards = (first >> kBlockBits) + 1 + beside;
+        const std::uint32_t slot = around[static_cast<std::size_t>(towards)];
         dx = last + 1 - x;
         if (slot == kNoBlock) continue;
         const Block& block = *blocks_[slot];
