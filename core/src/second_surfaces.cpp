@@ -18,8 +18,7 @@ bool holds_two(const Cell& cell, double cell_size_m) {
   constexpr double kFloor_m = 0.003;
   if (!cell.has_evidence()) return false;
   const double variance_m2 = cell.evidence_variance_m2();
-  const double noisy_m = 0.5 * kLayeredShare * cell_size_m;
-  if (!(variance_m2 < noisy_m * noisy_m)) return false;
+  if (is_layered(variance_m2, cell_size_m)) return false;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(cell.evidence.unpacked().covariance(), Eigen::EigenvaluesOnly);
   return solver.eigenvalues()(0) > kSigmas * kSigmas * variance_m2 + kFloor_m * kFloor_m;
