@@ -185,7 +185,7 @@ HWY_INLINE std::size_t append(hn::Mask<IntTag> mask, std::size_t at, std::size_t
                               std::size_t count) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(kInt, mask, bytes);
-  for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) {
+  for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8U; bits != 0; bits &= bits - 1) {
     const std::size_t begin = at + hwy::Num0BitsBelowLS1Bit_Nonzero32(bits);
     if (begin > 0 && begin < size) begins[count++] = static_cast<std::uint32_t>(begin);
   }
@@ -359,7 +359,11 @@ HWY_INLINE Floats sums_of_blocks(Floats a, Floats b, Floats c, Floats d) {
 HWY_INLINE void add_to(float* sums, Floats a, Floats b, Floats c, Floats d) {
   const hn::Full128<float> four;
   const Floats blocks = sums_of_blocks(a, b, c, d);
-#if HWY_MAX_BYTES >= 32
+#if HWY_MAX_BYTES >= 64
+  const hn::Half<FloatTag> eight;
+  const auto halves = hn::Add(hn::LowerHalf(eight, blocks), hn::UpperHalf(eight, blocks));
+  const auto sum = hn::Add(hn::LowerHalf(four, halves), hn::UpperHalf(four, halves));
+#elif HWY_MAX_BYTES >= 32
   const auto sum = hn::Add(hn::LowerHalf(four, blocks), hn::UpperHalf(four, blocks));
 #else
   const auto sum = blocks;

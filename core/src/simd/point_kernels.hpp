@@ -8,7 +8,7 @@
 namespace planemap::simd {
 
 constexpr std::size_t kChunkPoints = 320;  ///< half a row of a Kinect: a chunk and what it needs stay in the L1 cache
-constexpr std::size_t kMaxLanes = 8;       ///< widest vector that is used, floats
+constexpr std::size_t kMaxLanes = 16;      ///< widest vector that is used, floats
 constexpr std::size_t kSumCount = 12;      ///< sums of an Accumulator
 
 /// From the sensor frame to cells. World coordinates are counted in cells from the cell that the sensor is in, so
@@ -57,10 +57,10 @@ struct PointChunk {
   static constexpr std::int32_t kNoCell = INT32_MIN;  ///< cell[0] of what is not mapped
 
   std::size_t size = 0;
-  alignas(32) std::int32_t cell[3][kRoom] = {};  ///< the cell that each point lies in, from the sensor's
-  alignas(32) float place_cells[3][kRoom] = {};  ///< from the lower corner of the sensor's cell, along the world's axes
-  alignas(32) float variance_m2[3][kRoom] = {};  ///< along the sensor's axes
-  alignas(32) std::int32_t target[kRoom] = {};   ///< who takes the point; kNoTarget: nobody
+  alignas(64) std::int32_t cell[3][kRoom] = {};  ///< the cell that each point lies in, from the sensor's
+  alignas(64) float place_cells[3][kRoom] = {};  ///< from the lower corner of the sensor's cell, along the world's axes
+  alignas(64) float variance_m2[3][kRoom] = {};  ///< along the sensor's axes
+  alignas(64) std::int32_t target[kRoom] = {};   ///< who takes the point; kNoTarget: nobody
 };
 
 constexpr std::int32_t kNoTarget = -1;
