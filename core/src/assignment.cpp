@@ -45,39 +45,62 @@ struct DepthLimits {
 /// One scan on its way into the cells; what it needs stays for the next one.
 class Assigner::Pass {
  public:
-  Pass(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid)
-      : kernels_(simd::kernels(core.simd)), sensor_(sensor), near_(grid) {}
+  Pass(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid, SecondThread* second)
+      : kernels_(simd::kernels(core.simd)), sensor_(sensor), second_(second), parts_{Part(grid), Part(grid)} {}
 
-  PointCounts run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+  PointCounts run(const UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
                   const DividingPlanes& planes);
   /// Writes what the scan adds, and makes its cells working ones.
-  void collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor, std::vector<CellChange>& changes) const;
+  void collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor, std::vector<CellChange>& changes);
 
  private:
+  /// The scan is cut in two parts, each with sums of its own: two threads, or one after the other, come to the same.
+  static constexpr std::size_t kParts = 2;
+  struct alignas(64) Part {
+    explicit Part(const GridConfig& grid) : near(grid) {}
+    NearCells near;
+    simd::PointChunk chunk;
+    std::array<std::uint32_t, simd::kChunkPoints + 1> begins{};
+    std::array<simd::Run, simd::kChunkPoints> runs{};
+    simd::PieceCounts counts;
+  };
+
   void place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor, double focal_length_px,
                     const DividingPlanes& planes);
-  void read(UncertainGrid& grid, const DepthScan& scan, simd::PieceCounts& counts);
-  void read(UncertainGrid& grid, const PointScan& scan, simd::PieceCounts& counts);
-  void assign_chunk(UncertainGrid& grid);
+  void read(const UncertainGrid& grid, const DepthScan& scan, std::size_t number);
+  void read(const UncertainGrid& grid, const PointScan& scan, std::size_t number);
+  void assign_chunk(const UncertainGrid& grid, Part& part) const;
+  void collect(UncertainGrid& grid, const Part& part, const Eigen::Matrix3d& R_squared,
+               std::vector<CellChange>& changes) const;
 
   const simd::Kernels& kernels_;
   SensorConfig sensor_;
+  SecondThread* second_;
   simd::Projection projection_;
   std::vector<float> ray_x_;
-  simd::PointChunk chunk_;
-  std::array<std::uint32_t, simd::kChunkPoints + 1> begins_{};
-  std::array<simd::Run, simd::kChunkPoints> runs_{};
-  NearCells near_;
+  std::array<Part, kParts> parts_;
 };
 
-PointCounts Assigner::Pass::run(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
+PointCounts Assigner::Pass::run(const UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,
                                 const DividingPlanes& planes) {
   const auto* depth = std::get_if<DepthScan>(&scan);
   place_sensor(grid, T_world_sensor, depth != nullptr ? depth->intrinsics.fx : sensor_.focal_length_px, planes);
-  simd::PieceCounts found;
-  std::visit([&](const auto& s) { read(grid, s, found); }, scan);
-  return {found.mapped + found.no_return + found.out_of_range + found.invalid, found.mapped, found.no_return,
-          found.out_of_range, found.invalid};
+  if (depth != nullptr) {
+    const PinholeIntrinsics& k = depth->intrinsics;
+    ray_x_.resize(static_cast<std::size_t>(k.width));
+    for (std::size_t u = 0; u < ray_x_.size(); ++u) {
+      ray_x_[u] = static_cast<float>((static_cast<double>(u) - k.cx) / k.fx);
+    }
+  }
+  const auto read_part = [&](std::size_t number) { std::visit([&](const auto& s) { read(grid, s, number); }, scan); };
+  do_both(
+      second_, [&] { read_part(0); }, [&] { read_part(1); });
+  PointCounts found;
+  for (const Part& part : parts_) {
+    const simd::PieceCounts& c = part.counts;
+    found += {c.mapped + c.no_return + c.out_of_range + c.invalid, c.mapped, c.no_return, c.out_of_range, c.invalid};
+  }
+  return found;
 }
 
 void Assigner::Pass::place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor,
@@ -87,7 +110,10 @@ void Assigner::Pass::place_sensor(const UncertainGrid& grid, const Eigen::Isomet
   const Eigen::Vector3d sensor_cells = T_world_sensor.translation() * per_m;
   const bool is_in_this_world = sensor_cells.cwiseAbs().maxCoeff() < kMaxCoordinateCells;
   const Eigen::Vector3d corner = is_in_this_world ? Eigen::Vector3d(sensor_cells.array().floor()) : sensor_cells;
-  near_.begin(is_in_this_world ? CellIndex(corner.cast<int>()) : CellIndex::Zero(), T_world_sensor, planes);
+  for (Part& part : parts_) {
+    part.near.begin(is_in_this_world ? CellIndex(corner.cast<int>()) : CellIndex::Zero(), T_world_sensor, planes);
+    part.counts = {};
+  }
   for (int w = 0; w < 3; ++w) {
     for (int k = 0; k < 3; ++k) {
       projection_.axis_cells[k][w] = static_cast<float>(T_world_sensor.linear()(w, k) * per_m);
@@ -100,81 +126,95 @@ void Assigner::Pass::place_sensor(const UncertainGrid& grid, const Eigen::Isomet
   projection_.lateral_factor2 = static_cast<float>(model.lateral_factor() * model.lateral_factor());
 }
 
-void Assigner::Pass::read(UncertainGrid& grid, const DepthScan& scan, simd::PieceCounts& counts) {
+void Assigner::Pass::read(const UncertainGrid& grid, const DepthScan& scan, std::size_t number) {
+  Part& part = parts_[number];
   const PinholeIntrinsics& k = scan.intrinsics;
   const auto width = static_cast<std::size_t>(k.width);
-  ray_x_.resize(width);
-  for (std::size_t u = 0; u < width; ++u) ray_x_[u] = static_cast<float>((static_cast<double>(u) - k.cx) / k.fx);
+  const auto height = static_cast<std::size_t>(k.height);
   const DepthLimits limits(sensor_, scan.depth_scale_m);
   simd::DepthPiece piece;
   piece.depth_scale_m = static_cast<float>(scan.depth_scale_m);
   piece.nearest = limits.nearest;
   piece.farthest = limits.farthest;
-  for (int v = 0; v < k.height; ++v) {
-    piece.ray_y = static_cast<float>((v - k.cy) / k.fy);
+  for (std::size_t v = height * number / kParts; v < height * (number + 1) / kParts; ++v) {
+    piece.ray_y = static_cast<float>((static_cast<double>(v) - k.cy) / k.fy);
     for (std::size_t begin = 0; begin < width; begin += simd::kChunkPoints) {
-      piece.depth = scan.depth.data() + static_cast<std::size_t>(v) * width + begin;
+      piece.depth = scan.depth.data() + v * width + begin;
       piece.ray_x = ray_x_.data() + begin;
       piece.size = std::min(simd::kChunkPoints, width - begin);
-      kernels_.project_depth(projection_, piece, chunk_, counts);
-      assign_chunk(grid);
+      kernels_.project_depth(projection_, piece, part.chunk, part.counts);
+      assign_chunk(grid, part);
     }
   }
 }
 
-void Assigner::Pass::read(UncertainGrid& grid, const PointScan& scan, simd::PieceCounts& counts) {
+void Assigner::Pass::read(const UncertainGrid& grid, const PointScan& scan, std::size_t number) {
+  Part& part = parts_[number];
   simd::CloudPiece piece;
   piece.min_range_m = not_below(sensor_.min_range_m);
   piece.max_range_m = not_above(sensor_.max_range_m);
   const std::size_t size = scan.xyz_m.size() / 3;
-  for (std::size_t begin = 0; begin < size; begin += simd::kChunkPoints) {
+  const std::size_t end = size * (number + 1) / kParts;
+  for (std::size_t begin = size * number / kParts; begin < end; begin += simd::kChunkPoints) {
     piece.xyz_m = scan.xyz_m.data() + 3 * begin;
     piece.sigma_m = scan.sigma_m.empty() ? nullptr : scan.sigma_m.data() + 3 * begin;
-    piece.size = std::min(simd::kChunkPoints, size - begin);
-    kernels_.project_cloud(projection_, piece, chunk_, counts);
-    assign_chunk(grid);
+    piece.size = std::min(simd::kChunkPoints, end - begin);
+    kernels_.project_cloud(projection_, piece, part.chunk, part.counts);
+    assign_chunk(grid, part);
   }
 }
 
-void Assigner::Pass::assign_chunk(UncertainGrid& grid) {
+void Assigner::Pass::assign_chunk(const UncertainGrid& grid, Part& part) const {
   constexpr std::size_t kPad = simd::PointChunk::kPad;
-  const std::size_t count = kernels_.find_runs(chunk_, begins_.data());
+  simd::PointChunk& chunk = part.chunk;
+  NearCells& near = part.near;
+  const std::size_t count = kernels_.find_runs(chunk, part.begins.data());
   for (std::size_t i = 0; i < count; ++i) {
-    simd::Run& run = runs_[i];
-    run = {begins_[i], begins_[i + 1]};
+    simd::Run& run = part.runs[i];
+    run = {part.begins[i], part.begins[i + 1]};
     const std::size_t at = kPad + run.begin;
-    if (chunk_.cell[0][at] == simd::PointChunk::kNoCell) continue;
-    near_.find_candidates(grid, {chunk_.cell[0][at], chunk_.cell[1][at], chunk_.cell[2][at]}, run);
+    if (chunk.cell[0][at] == simd::PointChunk::kNoCell) continue;
+    near.find_candidates(grid, {chunk.cell[0][at], chunk.cell[1][at], chunk.cell[2][at]}, run);
   }
-  kernels_.assign(chunk_, runs_.data(), count, near_.candidates());
-  if (near_.has_dividers()) kernels_.divide(chunk_, near_.accumulators(), near_.dividers());
-  kernels_.accumulate(chunk_, near_.accumulators());
+  kernels_.assign(chunk, part.runs.data(), count, near.candidates());
+  if (near.has_dividers()) kernels_.divide(chunk, near.accumulators(), near.dividers());
+  kernels_.accumulate(chunk, near.accumulators());
 }
 
 void Assigner::Pass::collect(UncertainGrid& grid, const Eigen::Matrix3d& R_world_sensor,
-                             std::vector<CellChange>& changes) const {
+                             std::vector<CellChange>& changes) {
   const Eigen::Matrix3d R_squared = R_world_sensor.cwiseAbs2();
-  const double size_m = grid.cell_size_m();
-  const double size2 = size_m * size_m;
-  for (std::size_t target = 0; target < near_.size(); ++target) {
-    const simd::Accumulator& accumulator = near_.accumulator(target);
-    if (accumulator.count == 0) continue;
-    const CellRef ref = near_.cell(target);
-    grid.writable(ref).working = static_cast<std::uint32_t>(changes.size());
-    CellChange& change = changes.emplace_back();
-    change.cell = ref;
-    std::array<double, simd::kSumCount> sum;
-    std::copy(std::begin(accumulator.sums), std::end(accumulator.sums), sum.begin());
-    Moments& points = change.added.points;
-    points.weight = accumulator.count;
-    points.first = size_m * Eigen::Vector3d(sum[0], sum[1], sum[2]);
-    for (std::size_t i = 0; i < 6; ++i) points.second.e[i] = size2 * sum[3 + i];
-    change.added.error_m2 = R_squared * Eigen::Vector3d(sum[9], sum[10], sum[11]);
+  for (Part& part : parts_) {
+    part.near.make_noted(grid);
+    collect(grid, part, R_squared, changes);
   }
 }
 
-Assigner::Assigner(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid)
-    : pass_(std::make_unique<Pass>(core, sensor, grid)) {}
+void Assigner::Pass::collect(UncertainGrid& grid, const Part& part, const Eigen::Matrix3d& R_squared,
+                             std::vector<CellChange>& changes) const {
+  const double size_m = grid.cell_size_m();
+  const double size2 = size_m * size_m;
+  for (std::size_t target = 0; target < part.near.size(); ++target) {
+    const simd::Accumulator& accumulator = part.near.accumulator(target);
+    if (accumulator.count == 0) continue;
+    const CellRef ref = part.near.cell(target);
+    std::uint32_t& working = grid.writable(ref).working;
+    if (working == Cell::kNotWorking) {
+      working = static_cast<std::uint32_t>(changes.size());
+      changes.emplace_back().cell = ref;
+    }
+    ScanSums& added = changes[working].added;
+    std::array<double, simd::kSumCount> sum;
+    std::copy(std::begin(accumulator.sums), std::end(accumulator.sums), sum.begin());
+    added.points.weight += accumulator.count;
+    added.points.first += size_m * Eigen::Vector3d(sum[0], sum[1], sum[2]);
+    for (std::size_t i = 0; i < 6; ++i) added.points.second.e[i] += size2 * sum[3 + i];
+    added.error_m2 += R_squared * Eigen::Vector3d(sum[9], sum[10], sum[11]);
+  }
+}
+
+Assigner::Assigner(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid, SecondThread* second)
+    : pass_(std::make_unique<Pass>(core, sensor, grid, second)) {}
 Assigner::~Assigner() = default;
 
 PointCounts Assigner::assign(UncertainGrid& grid, const Scan& scan, const Eigen::Isometry3d& T_world_sensor,

@@ -1,5 +1,7 @@
 #include "planemap/mapper.hpp"
 
+#include <array>
+
 #include "planemap/assignment.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/local_planes.hpp"
@@ -37,12 +39,13 @@ constexpr std::size_t kKeptRemovals = 4096;
 
 class Mapper::Impl {
  public:
-  Impl(const MapperConfig& config, std::uint64_t epoch)
+  Impl(const MapperConfig& config, std::uint64_t epoch, SecondThread* second)
       : config_(config),
         epoch_(epoch),
+        second_(second),
         grid_(config.grid.cell_size_m),
-        assigner_(config.core, config.sensor, config.grid),
-        normals_(config.normals),
+        assigner_(config.core, config.sensor, config.grid, second),
+        normals_{NormalEstimator(config.normals), NormalEstimator(config.normals)},
         local_(config.grid, config.normals, config.planes),
         planes_(config.grid, config.planes, config.pose_error),
         wear_(config.wear, config.sensor, config.grid.cell_size_m) {}
@@ -53,10 +56,18 @@ class Mapper::Impl {
     assign(scan, pose.T_world_sensor, observer, report);
     fit_normals(observer);
     std::span<const LocalPlane> local;
-    {
-      const StageScope scope(observer, Stage::kLocalPlanes);  // Fig. 3, lines 4 and 5
-      local = local_.extract(grid_, assigner_.changes(), neighbourhoods_);
-    }
+    std::span<const CellRef> worn;
+    do_both(
+        second_,
+        [&] {
+          const StageScope scope(observer, Stage::kLocalPlanes);  // Fig. 3, lines 4 and 5
+          local = local_.extract(grid_, assigner_.changes(), neighbourhoods_);
+        },
+        [&] {
+          if (!config_.wear.enabled) return;
+          const StageScope scope(second_ == nullptr ? observer : nullptr, Stage::kWear);
+          worn = wear_.look(grid_, scan, pose.T_world_sensor, assigner_.changes());
+        });
     {
       const StageScope scope(observer, Stage::kGlobalPlanes);  // Fig. 3, lines 6 to 9
       const GlobalReport global = planes_.merge(grid_, local, assigner_.changes(), neighbourhoods_, pose);
@@ -64,7 +75,7 @@ class Mapper::Impl {
       report.new_planes = global.new_planes;
       report.merged_planes = global.merged_planes;
     }
-    if (config_.wear.enabled) wear(scan, pose.T_world_sensor, observer, report);
+    wear_away(worn, observer, report);
     assigner_.finish(grid_);
     report.planes_changed = planes_.changed();
     if (report.planes_changed) ++revision_;
@@ -137,20 +148,27 @@ class Mapper::Impl {
 
   void fit_normals(StageObserver* observer) {
     const StageScope scope(observer, Stage::kNormals);
-    neighbourhoods_.gather(grid_, assigner_.changes());
-    for (std::uint32_t i = 0; i < assigner_.changes().size(); ++i) {
-      const CellRef ref = assigner_.changes()[i].cell;
-      if (grid_.cell(ref).sums.count > config_.grid.density_threshold) {
-        normals_.refresh(grid_, ref, neighbourhoods_.around(i));
-      }
-    }
+    neighbourhoods_.begin(assigner_.changes().size());
+    do_both(
+        second_, [&] { fit_part(0); }, [&] { fit_part(1); });
     for (const CellChange& change : assigner_.changes()) planes_.attach(grid_, change.cell);
   }
 
-  void wear(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer, ScanReport& report) {
+  /// Of a part of the changes. They read what no normal changes, and their blocks are writable already.
+  void fit_part(std::size_t part) {
+    neighbourhoods_.gather(grid_, assigner_.changes(), part);
+    for (std::uint32_t i = neighbourhoods_.first_of(part); i < neighbourhoods_.first_of(part + 1); ++i) {
+      const CellRef ref = assigner_.changes()[i].cell;
+      if (grid_.cell(ref).sums.count > config_.grid.density_threshold) {
+        normals_[part].refresh(grid_, ref, neighbourhoods_.around(i));
+      }
+    }
+  }
+
+  void wear_away(std::span<const CellRef> worn, StageObserver* observer, ScanReport& report) {
+    if (worn.empty()) return;
     const StageScope scope(observer, Stage::kWear);
-    const auto worn = wear_.look(grid_, scan, T_world_sensor, assigner_.changes());
-    if (!worn.empty()) planes_.wear_away(grid_, worn);
+    planes_.wear_away(grid_, worn);
     report.worn_cells = worn.size();
   }
 
@@ -163,12 +181,13 @@ class Mapper::Impl {
 
   MapperConfig config_;
   std::uint64_t epoch_;
+  SecondThread* second_;
   std::uint64_t revision_ = 0;
   std::int64_t utime_ = 0;
   UncertainGrid grid_;
   Assigner assigner_;
   Neighbourhoods neighbourhoods_;
-  NormalEstimator normals_;
+  std::array<NormalEstimator, Neighbourhoods::kParts> normals_;
   LocalPlaneExtractor local_;
   PlaneMap planes_;
   Wear wear_;
@@ -178,7 +197,8 @@ class Mapper::Impl {
   std::uint64_t removed_complete_since_ = 0;
 };
 
-Mapper::Mapper(const MapperConfig& config, std::uint64_t epoch) : impl_(std::make_unique<Impl>(config, epoch)) {}
+Mapper::Mapper(const MapperConfig& config, std::uint64_t epoch, SecondThread* second)
+    : impl_(std::make_unique<Impl>(config, epoch, second)) {}
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 Mapper& Mapper::operator=(Mapper&&) noexcept = default;

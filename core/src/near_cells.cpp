@@ -14,12 +14,16 @@ void NearCells::begin(const CellIndex& base, const Eigen::Isometry3d& T_world_se
   dividers_.clear();
   table_.clear();
   cells_.clear();
+  noted_.clear();
   candidates_.clear();
 }
 
-void NearCells::find_candidates(UncertainGrid& grid, const CellIndex& cell, simd::Run& run) {
+void NearCells::find_candidates(const UncertainGrid& grid, const CellIndex& cell, simd::Run& run) {
   std::uint32_t number = table_(cell.x(), cell.y(), cell.z());
-  if (number == CellTable::kNone) number = number_of(grid, grid.find_or_add(frame_.base + cell), cell);
+  if (number == kNone) {
+    const auto ref = grid.find(frame_.base + cell);
+    number = ref ? number_of(grid, *ref, cell) : note(cell, kNone);
+  }
   if (cells_[number].candidate_count == 0) list_candidates(grid, number, cell);
   run.first_candidate = cells_[number].first_candidate;
   run.candidate_count = cells_[number].candidate_count;
@@ -30,30 +34,36 @@ std::uint32_t NearCells::number_of(const UncertainGrid& grid, CellRef ref, const
   if (const std::uint32_t known = table_(cell.x(), cell.y(), cell.z()); known != kNone) return known;
   const std::uint32_t number = add(grid, ref, cell);
   table_(cell.x(), cell.y(), cell.z()) = number;
-  if (const std::uint16_t second = grid.cell(ref).second; second != Cell::kNoSecond) {
-    add_second(grid, number, {ref.block, second}, cell);
+  if (const std::uint16_t second_ordinal = grid.cell(ref).second; second_ordinal != Cell::kNoSecond) {
+    const CellRef second{ref.block, second_ordinal};
+    const std::uint32_t other = add(grid, second, cell);
+    pair(number, planes_.of(grid.cell(ref).plane), other, planes_.of(grid.cell(second).plane));
   }
   return number;
 }
 
-void NearCells::add_second(const UncertainGrid& grid, std::uint32_t number, CellRef second, const CellIndex& cell) {
-  const std::uint32_t other = add(grid, second, cell);
-  const Plane* first_plane = planes_.of(grid.cell(cells_[number].ref).plane);
-  const Plane* second_plane = planes_.of(grid.cell(second).plane);
+/// Tells the points of two cells at one place apart; where no plane of theirs is known, Eq. 7 alone does.
+void NearCells::pair(std::uint32_t number, const Plane* plane, std::uint32_t other, const Plane* other_plane) {
   cells_[number].second = other;
-  if (first_plane == nullptr && second_plane == nullptr) return;  // Eq. 7 alone tells them apart
+  if (plane == nullptr && other_plane == nullptr) return;
   accumulators_[number].divider = accumulators_[other].divider = static_cast<std::int32_t>(dividers_.size());
   dividers_.push_back({{static_cast<std::int32_t>(number), static_cast<std::int32_t>(other)},
-                       {scan_plane(first_plane, frame_), scan_plane(second_plane, frame_)}});
+                       {scan_plane(plane, frame_), scan_plane(other_plane, frame_)}});
 }
 
-std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
+std::uint32_t NearCells::add(const CellIndex& cell) {
   const auto number = static_cast<std::uint32_t>(cells_.size());
-  NearCell& near = cells_.emplace_back();
+  cells_.emplace_back();
   if (accumulators_.size() < cells_.size()) accumulators_.resize(2 * cells_.size());
   simd::Accumulator& accumulator = accumulators_[number];
   accumulator = {};
   for (int w = 0; w < 3; ++w) accumulator.centre_cells[w] = static_cast<float>(cell(w)) + 0.5F;
+  return number;
+}
+
+std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellIndex& cell) {
+  const std::uint32_t number = add(cell);
+  NearCell& near = cells_[number];
   near.ref = ref;
   const CellSums& sums = grid.cell(ref).sums;
   near.has_points = sums.count > 0.0;
@@ -67,7 +77,21 @@ std::uint32_t NearCells::add(const UncertainGrid& grid, CellRef ref, const CellI
   return number;
 }
 
-void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
+std::uint32_t NearCells::note(const CellIndex& cell, std::uint32_t first) {
+  const std::uint32_t number = add(cell);
+  if (first == kNone) table_(cell.x(), cell.y(), cell.z()) = number;
+  noted_.push_back({number, first, cell});
+  return number;
+}
+
+void NearCells::make_noted(UncertainGrid& grid) {
+  for (const Noted& noted : noted_) {
+    cells_[noted.number].ref = noted.first == kNone ? grid.find_or_add(frame_.base + noted.cell)
+                                                    : grid.find_or_add_second(cells_[noted.first].ref);
+  }
+}
+
+void NearCells::list_candidates(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
   rivals_.clear();
   const std::uint32_t second = cells_[number].second;
   if (cells_[number].has_points || (second != kNone && cells_[second].has_points)) {
@@ -86,7 +110,7 @@ void NearCells::list_candidates(UncertainGrid& grid, std::uint32_t number, const
   }
 }
 
-void NearCells::gather(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
+void NearCells::gather(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell) {
   const Eigen::Vector3f view =
       (frame_.T_world_sensor.translation() - grid.geometric_centre_m(frame_.base + cell)).cast<float>();
   open_second(grid, number, cell, view);
@@ -103,14 +127,13 @@ void NearCells::gather(UncertainGrid& grid, std::uint32_t number, const CellInde
 }
 
 /// Both faces of a sheet may lie in one cell: what is seen of it from behind is of its other face.
-void NearCells::open_second(UncertainGrid& grid, std::uint32_t number, const CellIndex& cell,
+void NearCells::open_second(const UncertainGrid& grid, std::uint32_t number, const CellIndex& cell,
                             const Eigen::Vector3f& view) {
   if (!config_.second_surfaces || !config_.view_side || cells_[number].second != kNone) return;
   if (!cells_[number].has_points || cells_[number].view.dot(view) >= 0.0F) return;
-  const CellRef ref = cells_[number].ref;
-  const Plane* plane = planes_.of(grid.cell(ref).plane);
+  const Plane* plane = planes_.of(grid.cell(cells_[number].ref).plane);
   if (plane == nullptr || plane->signed_distance_m(frame_.T_world_sensor.translation()) >= 0.0) return;
-  add_second(grid, number, grid.find_or_add_second(ref), cell);
+  pair(number, plane, note(cell, number), nullptr);
 }
 
 void NearCells::drop_losers() {

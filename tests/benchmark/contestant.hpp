@@ -35,7 +35,7 @@ class Contestant {
 
 /// All of planemap, from the depth image to the published snapshot.
 /// @param name  of the whole; its stages are "name.stage"
-std::unique_ptr<Contestant> make_planemap(const std::string& name, const MapperConfig& config);
+std::unique_ptr<Contestant> make_planemap(const std::string& name, const MapperConfig& config, int threads = 1);
 /// The floor: depth to sums of a geometric grid, written by hand, with nothing of the method.
 std::unique_ptr<Contestant> make_reference(const SensorConfig& sensor, double cell_size_m);
 std::unique_ptr<Contestant> make_pcl_voxel_grid(double leaf_m);

@@ -71,6 +71,7 @@ std::vector<std::unique_ptr<Contestant>> contestants(const MapperConfig& config,
   all.push_back(make_planemap("planemap", config));
   all.push_back(make_reference(config.sensor, config.grid.cell_size_m));
   if (alone) return all;
+  all.push_back(make_planemap("planemapTwoThreads", config, 2));
   for (const auto& [name, target] :
        {std::pair("planemapSse4", SimdTarget::kSse4), std::pair("planemapScalar", SimdTarget::kScalar)}) {
     MapperConfig other = config;

@@ -353,7 +353,7 @@ TEST(Mapper, TellsItsStagesInTheOrderOfThePaper) {
   Recorder recorder;
   mapper.integrate(room.scan(0), Room::pose(0), &recorder);
   mapper.snapshot(&recorder);
-  EXPECT_EQ(recorder.log, "<assign><normals><localPlanes><globalPlanes><wear><snapshot>");
+  EXPECT_EQ(recorder.log, "<assign><normals><localPlanes><wear><globalPlanes><snapshot>");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <planemap/scan.hpp>
 #include <random>
@@ -61,6 +63,25 @@ inline DepthScan render(const std::vector<Wall>& walls, const Eigen::Isometry3d&
     }
   }
   return scan;
+}
+
+/// The points of a depth image, in no order that tells of the image.
+inline PointScan cloud_of(const DepthScan& scan) {
+  PointScan cloud;
+  cloud.utime = scan.utime;
+  const PinholeIntrinsics& k = scan.intrinsics;
+  const std::size_t size = scan.depth.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t at = i * 7919 % size;  // 7919 divides no image's size
+    if (scan.depth[at] == kNoReturn) continue;
+    const double z = scan.depth[at] * scan.depth_scale_m;
+    const double u = static_cast<double>(at % static_cast<std::size_t>(k.width));
+    const double v = static_cast<double>(at / static_cast<std::size_t>(k.width));
+    for (const double x : {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z}) {
+      cloud.xyz_m.push_back(static_cast<float>(x));
+    }
+  }
+  return cloud;
 }
 
 }  // namespace planemap::testing

@@ -58,25 +58,6 @@ const PlaneRecord* box_front(const MapSnapshot& map) {
   return nullptr;
 }
 
-/// The points of a depth image, in no order that tells of the image.
-PointScan cloud_of(const DepthScan& scan) {
-  PointScan cloud;
-  cloud.utime = scan.utime;
-  const PinholeIntrinsics& k = scan.intrinsics;
-  const std::size_t size = scan.depth.size();
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t at = i * 7919 % size;  // 7919 divides no image's size
-    if (scan.depth[at] == kNoReturn) continue;
-    const double z = scan.depth[at] * scan.depth_scale_m;
-    const double u = static_cast<double>(at % static_cast<std::size_t>(k.width));
-    const double v = static_cast<double>(at / static_cast<std::size_t>(k.width));
-    for (const double x : {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z}) {
-      cloud.xyz_m.push_back(static_cast<float>(x));
-    }
-  }
-  return cloud;
-}
-
 struct BoxRun {
   std::size_t box_cells_before = 0;
   std::size_t box_cells_after = 0;
@@ -92,8 +73,8 @@ BoxRun run_box(const MapperConfig& config, bool as_cloud = false) {
   for (int i = 0; i < 50; ++i) {
     DepthScan scan = testing::render(i < 20 ? with_box() : floor_and_wall(), looking_at_box(i), 1);
     scan.utime = 1'000'000 + 100'000 * i;
-    const ScanReport report =
-        as_cloud ? mapper.integrate(cloud_of(scan), looking_at_box(i)) : mapper.integrate(scan, looking_at_box(i));
+    const ScanReport report = as_cloud ? mapper.integrate(testing::cloud_of(scan), looking_at_box(i))
+                                       : mapper.integrate(scan, looking_at_box(i));
     run.worn += report.worn_cells;
     if (i != 19) continue;
     EXPECT_EQ(run.worn, 0U);

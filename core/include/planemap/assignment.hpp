@@ -8,6 +8,7 @@
 #include <planemap/config.hpp>
 #include <planemap/plane.hpp>
 #include <planemap/scan.hpp>
+#include <planemap/second_thread.hpp>
 #include <planemap/uncertain_grid.hpp>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct CellChange {
 class Assigner {
  public:
   /// Throws std::invalid_argument where this machine does not have the instruction set of core.simd.
-  Assigner(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid);
+  /// @param second  assigns half of the points; not owned. nullptr: the caller's thread assigns all; the same comes out
+  Assigner(const CoreConfig& core, const SensorConfig& sensor, const GridConfig& grid, SecondThread* second = nullptr);
   ~Assigner();
   Assigner(const Assigner&) = delete;
   Assigner& operator=(const Assigner&) = delete;

@@ -8,6 +8,7 @@
 #include <planemap/config.hpp>
 #include <planemap/pose_covariance.hpp>
 #include <planemap/scan.hpp>
+#include <planemap/second_thread.hpp>
 #include <planemap/snapshot.hpp>
 
 namespace planemap {
@@ -43,8 +44,11 @@ struct ScanReport {
 /// configuration and the same calls give the same map.
 class Mapper {
  public:
-  /// @param epoch  names this life of the map; below 2^53
-  Mapper(const MapperConfig& config, std::uint64_t epoch);
+  /// @param epoch   names this life of the map; below 2^53
+  /// @param second  does some of the work; not owned, outlives the mapper. nullptr: the caller's thread does it all.
+  /// The
+  ///                map is the same
+  Mapper(const MapperConfig& config, std::uint64_t epoch, SecondThread* second = nullptr);
   ~Mapper();
   Mapper(Mapper&&) noexcept;
   Mapper& operator=(Mapper&&) noexcept;

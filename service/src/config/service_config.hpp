@@ -134,6 +134,15 @@ void visit_fields(Config& c, Visit&& visit) {
         c.scans);
 }
 
+struct MappingConfig {
+  int threads = 1;  ///< that work on one scan; the map is the same
+};
+
+template <MaybeConst<MappingConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"threads", "that work on one scan; the map is the same", 1, 2}, c.threads);
+}
+
 struct PublishConfig {
   std::string status_channel = "PLANEMAP_STATUS";
   std::string delta_channel = "PLANEMAP_DELTA";
@@ -240,6 +249,7 @@ struct ServiceConfig {
   std::vector<InputConfig> inputs = {InputConfig{}};
   PoseConfig pose;
   QueueConfig queue;
+  MappingConfig mapping;
   PublishConfig publish;
   GrpcConfig grpc;
   LogConfig log;
@@ -266,6 +276,7 @@ void visit_sections(Config& c, Visit&& visit) {
   visit(SectionInfo{"inputs", "Sensors: a list; each has a channel of its own."}, c.inputs);
   visit(SectionInfo{"pose", "How poses are found for scans."}, c.pose);
   visit(SectionInfo{"queue", "Scans with a pose, on their way to the mapper."}, c.queue);
+  visit(SectionInfo{"mapping", "The mapper."}, c.mapping);
   visit(SectionInfo{"publish", "What goes out over LCM."}, c.publish);
   visit(SectionInfo{"grpc", "What remote clients may ask over gRPC (planemap.v1)."}, c.grpc);
   visit(SectionInfo{"log", "The log, on standard error."}, c.log);

@@ -31,7 +31,8 @@ MappingService::MappingService(const ServiceConfig& config, std::uint64_t epoch,
       counters_(counters),
       on_snapshot_(std::move(on_snapshot)),
       queue_(static_cast<std::size_t>(config.queue.scans)),
-      mapper_(config_, epoch),
+      helper_(helper_thread_for(config.mapping.threads)),
+      mapper_(config_, epoch, helper_.get()),
       repeats_(kWarnPeriodS),
       snapshot_(mapper_.snapshot()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -97,7 +98,7 @@ void MappingService::begin_asked_maps() {
   resets_ += number - done_resets_;
   const std::uint64_t epoch = first_epoch_ + map_number_ + resets_;
   const auto old = snapshot();
-  mapper_ = Mapper(config_, epoch);
+  mapper_ = Mapper(config_, epoch, helper_.get());
   counters_.add("map.resets");
   publish(mapper_.snapshot());
   spdlog::info("a new map begins on demand, epoch {}; that of epoch {} had {} planes, revision {}", epoch, old->epoch(),
@@ -154,7 +155,7 @@ void MappingService::note_error(std::string error) {
 /// Readers keep the old map until the first scan of the new one is in it.
 void MappingService::begin_new_map(std::uint64_t map_number) {
   const std::uint64_t epoch = first_epoch_ + map_number + resets_;
-  mapper_ = Mapper(config_, epoch);
+  mapper_ = Mapper(config_, epoch, helper_.get());
   map_number_ = map_number;
   counters_.add("map.resets");
   const int count = repeats_.pass("reset", steady_now_s());

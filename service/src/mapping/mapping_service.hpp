@@ -16,6 +16,7 @@
 #include "common/counters.hpp"
 #include "common/repeat_guard.hpp"
 #include "config/service_config.hpp"
+#include "mapping/helper_thread.hpp"
 #include "mapping/scan_queue.hpp"
 
 namespace planemap::service {
@@ -86,6 +87,7 @@ class MappingService {
   Counters& counters_;
   std::function<void()> on_snapshot_;
   ScanQueue queue_;
+  const std::unique_ptr<HelperThread> helper_;
   Mapper mapper_;                 ///< of the mapper's thread alone, like the three below
   std::uint64_t map_number_ = 0;  ///< of the map that is being made
   std::uint64_t resets_ = 0;      ///< maps that were begun on demand: each is one more life

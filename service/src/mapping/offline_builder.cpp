@@ -1,10 +1,12 @@
 #include "mapping/offline_builder.hpp"
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "ingest/scan_intake.hpp"
+#include "mapping/helper_thread.hpp"
 
 namespace planemap::service {
 
@@ -13,7 +15,8 @@ class OfflineBuilder::Impl {
   Impl(const ServiceConfig& config, std::uint64_t epoch)
       : config_(config.mapper),
         first_epoch_(epoch),
-        mapper_(config_, epoch),
+        helper_(helper_thread_for(config.mapping.threads)),
+        mapper_(config_, epoch, helper_.get()),
         intake_(
             config, counters_, [this](RegisteredScan&& scan) { map(scan); },
             [](const std::string&) { /* counted, and kept as last_problem(); a library has no log of its own */ }) {}
@@ -44,7 +47,7 @@ class OfflineBuilder::Impl {
   }
 
   void begin_new_map(std::uint64_t map_number) {
-    mapper_ = Mapper(config_, first_epoch_ + map_number);
+    mapper_ = Mapper(config_, first_epoch_ + map_number, helper_.get());
     map_number_ = map_number;
     counters_.add("map.resets");
   }
@@ -66,6 +69,7 @@ class OfflineBuilder::Impl {
   const MapperConfig config_;
   const std::uint64_t first_epoch_;
   Counters counters_;
+  const std::unique_ptr<HelperThread> helper_;
   Mapper mapper_;
   std::uint64_t map_number_ = 0;
   StageTimer timer_;

@@ -22,7 +22,8 @@ using service::OfflineBuilder;
 using service::ServiceConfig;
 
 /// All that shapes the map beside the input's bytes, as text.
-std::string settings_of(const BuildInput& input, const ServiceConfig& config) {
+std::string settings_of(const BuildInput& input, ServiceConfig config) {
+  config.mapping = {};  // the map is the same for any number of threads
   std::string text = service::to_yaml(config);
   const auto& camera = input.folder.camera;
   if (camera) text += fmt::format("camera {} {} {} {}\n", camera->fx, camera->fy, camera->cx, camera->cy);
