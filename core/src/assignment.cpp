@@ -58,11 +58,11 @@ class Assigner::Pass {
   static constexpr std::size_t kParts = 2;
   struct alignas(64) Part {
     explicit Part(const GridConfig& grid) : near(grid) {}
-    NearCells near;
     simd::PointChunk chunk;
-    std::array<std::uint32_t, simd::kChunkPoints + 1> begins{};
     std::array<simd::Run, simd::kChunkPoints> runs{};
     simd::PieceCounts counts;
+    NearCells near;
+    std::array<std::uint32_t, simd::kChunkPoints + 1> begins{};
   };
 
   void place_sensor(const UncertainGrid& grid, const Eigen::Isometry3d& T_world_sensor, double focal_length_px,

@@ -179,6 +179,7 @@ class Mapper::Impl {
     removed_.erase(removed_.begin(), removed_.begin() + static_cast<std::ptrdiff_t>(surplus));
   }
 
+  Neighbourhoods neighbourhoods_;
   MapperConfig config_;
   std::uint64_t epoch_;
   SecondThread* second_;
@@ -186,7 +187,6 @@ class Mapper::Impl {
   std::int64_t utime_ = 0;
   UncertainGrid grid_;
   Assigner assigner_;
-  Neighbourhoods neighbourhoods_;
   std::array<NormalEstimator, Neighbourhoods::kParts> normals_;
   LocalPlaneExtractor local_;
   PlaneMap planes_;
