@@ -127,7 +127,7 @@ TEST(Feed, ScansHoldTheSameDepthRawAndCompressed) {
   for (const Encoding encoding : {Encoding::kRaw, Encoding::kZlib}) {
     Kept sink;
     FeedOptions options;
-    options.encoding = encoding;
+    options.format.encoding = encoding;
     ASSERT_TRUE(feed(sink, 1, options));
     const auto scan = decoded<planemap_lcm::depth_scan_t>(sink.messages.at(1));
     EXPECT_EQ(scan.size, static_cast<std::int32_t>(scan.data.size()));

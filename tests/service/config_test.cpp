@@ -275,6 +275,54 @@ TEST(Config, WhatTheGrpcServerCannotDoIsRefused) {
   EXPECT_TRUE(load_overrides({"grpc.listen=0.0.0.0:7670", "grpc.tls_certificate=c", "grpc.tls_key=k"}));
 }
 
+TEST(Config, EachSensorIsOneLine) {
+  const auto config = load_text(
+      "inputs:\n"
+      "  - {name: head, channel: OPENNI_FRAME, intrinsics: [528, 528, 320, 240], pose_channel: POSE_BODY}\n"
+      "  - {name: arm, channel: KINECT_FRAME, family: kinect_frame, intrinsics: [594, 591, 339, 242, 640, 480], "
+      "disparity: [0.075, 1090], pose_channel: ARM_TO_LOCAL}\n"
+      "  - {name: cart, channel: DRAKE_RGBD_CAMERA_IMAGES, frame: depth, intrinsics: [600, 600, 320, 240]}\n");
+  ASSERT_TRUE(config) << config.error().message;
+  ASSERT_EQ(config->inputs.size(), 3u);
+  EXPECT_EQ(config->inputs[0].family, ScanFamily::kAuto);
+  EXPECT_EQ(config->inputs[1].family, ScanFamily::kKinectFrame);
+  EXPECT_EQ(config->inputs[1].intrinsics.at(4), 640.0);
+  EXPECT_EQ(config->inputs[2].frame, "depth");
+  EXPECT_EQ(config->inputs[2].pose_channel, "POSE");
+}
+
+TEST(Config, CamerasThatCannotBeAreRefused) {
+  const struct {
+    std::vector<std::string> overrides;
+    const char* problem;
+  } cases[] = {
+      {{"inputs.0.family=laser"},
+       "'laser' is not known (allowed: auto, depth_scan, point_scan, kinect_frame, images, image, image_array, "
+       "pointcloud2, point_cloud)"},
+      {{"inputs.0.family=images"},
+       "inputs.0.intrinsics: are missing: the family's messages bring none; [fx, fy, cx, cy] in pixels"},
+      {{"inputs.0.intrinsics=[1, 2, 3]"},
+       "inputs.0.intrinsics: has 3 numbers, must have 4 (fx, fy, cx, cy) or 6 (width and height, too)"},
+      {{"inputs.0.intrinsics=[0, 2, 3, 4]"}, "inputs.0.intrinsics: fx 0 and fy 2 must be above 0"},
+      {{"inputs.0.intrinsics=[1, 2, .nan, 4]"}, "inputs.0.intrinsics.2: '.nan' is not a number"},
+      {{"inputs.0.intrinsics=[1, 2, 3, 4, 640.5, 480]"},
+       "inputs.0.intrinsics: width 640.5 and height 480 must be whole numbers of 1 to 4096 pixels"},
+      {{"inputs.0.disparity=[0.075]"},
+       "inputs.0.disparity: has 1 number, must have 2 (baseline in metres, offset) or none"},
+      {{"inputs.0.disparity=[75, 1090]"},
+       "inputs.0.disparity: baseline 75 must be above 0 and at most 1 m, offset 1090 above 0 and at most 10000"},
+      {{"inputs.0.depth_unit_m=0"}, "inputs.0.depth_unit_m: 0 is out of range"},
+      {{"publish.point_cloud_channel=POSE"},
+       "publish.point_cloud_channel: 'POSE' is used by inputs.0.pose_channel, too"},
+  };
+  for (const auto& c : cases) {
+    const auto config = load_overrides(c.overrides);
+    ASSERT_FALSE(config) << c.overrides[0];
+    EXPECT_NE(config.error().message.find(c.problem), std::string::npos) << config.error().message << "\nnot\n"
+                                                                         << c.problem;
+  }
+}
+
 TEST(Config, UrlGetsAReceiveBufferUnlessItHasOne) {
   const auto url_of = [](const char* url) { return effective_lcm_url({url, 3000000}); };
   EXPECT_EQ(url_of("udpm://239.255.76.67:7667?ttl=0"), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=3000000");

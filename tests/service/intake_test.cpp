@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "formats/field_formats.hpp"
 #include "ingest/idle_reason.hpp"
 #include "ingest/kernel_drops.hpp"
 #include "ingest/point_filter.hpp"
@@ -136,11 +137,27 @@ TEST(ScanIntake, ScanAndPoseBecomeARegisteredScan) {
 
 TEST(ScanIntake, UnknownTypeIsCountedAndSaidOnce) {
   Bench bench;
-  for (int i = 0; i < 5; ++i) bench.intake.on_message("PLANEMAP_SCAN", encoded(pose_message(kSecond)), 100.0 * i);
+  auto message = encoded(pose_message(kSecond));
+  message[0] ^= 1;
+  for (int i = 0; i < 5; ++i) bench.intake.on_message("PLANEMAP_SCAN", message, 100.0 * i);
   EXPECT_EQ(bench.counters.value("scans.rejected.unknown_type"), 5);
   EXPECT_EQ(bench.counters.value("scans.waiting"), 0);
   ASSERT_EQ(bench.warnings.size(), 1u);
-  EXPECT_NE(bench.warnings[0].find("channel PLANEMAP_SCAN: fingerprint 0x2e16efb052b0105e is neither"),
+  EXPECT_NE(bench.warnings[0].find("channel PLANEMAP_SCAN: fingerprint 0x2f16efb052b0105e is none of"),
+            std::string::npos);
+}
+
+TEST(ScanIntake, MessagesOnTheWrongChannelAreCountedAndSaidOnce) {
+  Bench bench;
+  for (int i = 0; i < 5; ++i) {
+    bench.intake.on_message("PLANEMAP_SCAN", encoded(pose_message(kSecond)), 100.0 * i);
+    bench.intake.on_message("POSE", encoded(wall_message(kSecond, i)), 100.0 * i);
+  }
+  EXPECT_EQ(bench.counters.value("scans.rejected.wrong_channel"), 5);
+  EXPECT_EQ(bench.counters.value("poses.rejected.wrong_channel"), 5);
+  ASSERT_EQ(bench.warnings.size(), 2u);
+  EXPECT_NE(bench.warnings[0].find("channel PLANEMAP_SCAN: bot_core.pose_t (0x2e16efb052b0105e) is a pose, which "
+                                   "belongs on inputs[].pose_channel"),
             std::string::npos);
 }
 
@@ -152,6 +169,50 @@ TEST(ScanIntake, RepeatedDamageIsSaidOnceInFiveSeconds) {
   EXPECT_EQ(bench.counters.value("scans.rejected.checksum"), 70);
   ASSERT_EQ(bench.warnings.size(), 2u);
   EXPECT_NE(bench.warnings[1].find("(50 times since this was said last)"), std::string::npos) << bench.warnings[1];
+}
+
+TEST(ScanIntake, SensorsOfSeveralFamiliesWorkAtOnce) {
+  ServiceConfig config;
+  config.inputs.resize(3);
+  config.inputs[0].name = "own";
+  config.inputs[1].name = "kinect";
+  config.inputs[1].channel = "KINECT_FRAME";
+  config.inputs[1].intrinsics = {75.0, 75.0, 40.0, 30.0};
+  config.inputs[1].translation_m = {0.0, 0.0, 2.0};
+  config.inputs[2].name = "openni";
+  config.inputs[2].channel = "OPENNI_FRAME";
+  config.inputs[2].family = ScanFamily::kImages;
+  config.inputs[2].intrinsics = {80.0, 80.0, 40.0, 30.0, 80.0, 60.0};
+  config.inputs[2].pose_channel = "CAMERA_TO_LOCAL";
+  config.inputs[2].max_range_m = 0.9;
+  Bench bench(config);
+  DepthScan wall = wall_scan(1000);
+  bench.intake.on_message("POSE", encoded(pose_message(kSecond, 1.0)), 0.0);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation().x() = 5.0;
+  bench.intake.on_message("CAMERA_TO_LOCAL", encoded(kinect_bridge::to_rigid_transform(T, kSecond)), 0.0);
+  bench.intake.on_message("PLANEMAP_SCAN", encoded(wall_message(kSecond, 1)), 0.0);
+  bench.intake.on_message("KINECT_FRAME", encoded(kinect_bridge::to_kinect_frame(wall, kinect_bridge::Encoding::kZlib)),
+                          0.0);
+  const auto images = encoded(kinect_bridge::to_images(wall, kinect_bridge::Encoding::kZlib));
+  bench.intake.on_message("OPENNI_FRAME", images, 0.0);
+  ASSERT_EQ(bench.scans.size(), 3u);
+  EXPECT_EQ(bench.scans[0].T_world_sensor.translation(), Eigen::Vector3d(1.0, 0.0, 0.0));
+  EXPECT_EQ(bench.scans[1].T_world_sensor.translation(), Eigen::Vector3d(1.0, 0.0, 2.0));
+  EXPECT_EQ(bench.scans[2].T_world_sensor.translation(), Eigen::Vector3d(5.0, 0.0, 0.0));
+  EXPECT_EQ(std::get<DepthScan>(bench.scans[1].scan).intrinsics.fx, 75.0);
+  EXPECT_EQ(std::get<DepthScan>(bench.scans[2].scan).intrinsics.fx, 80.0);
+  EXPECT_EQ(bench.counters.value("points_out_of_input_range"), 4800);  // of the third, which sees 0.9 m far
+  // A good type where another one is wanted.
+  bench.intake.on_message("OPENNI_FRAME", encoded(wall_message(kSecond, 2)), 0.0);
+  EXPECT_EQ(bench.counters.value("scans.rejected.wrong_channel"), 1);
+  // No intrinsics: said, counted, and the daemon goes on.
+  bench.intake.on_message("PLANEMAP_SCAN", images, 0.0);
+  EXPECT_EQ(bench.counters.value("scans.rejected.intrinsics"), 1);
+  EXPECT_EQ(bench.intake.last_problem().rfind("PLANEMAP_SCAN: images_t brings no intrinsics", 0), 0u)
+      << bench.intake.last_problem();
+  EXPECT_EQ(bench.counters.value("scans.received"), 5);
+  EXPECT_EQ(bench.counters.value("scans.waiting"), 3);
 }
 
 TEST(ScanIntake, DuplicatesAndTooFastScansAreDroppedByName) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "codec/fingerprint.hpp"
 #include "support/messages.hpp"
 
 namespace planemap::service {

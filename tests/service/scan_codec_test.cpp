@@ -160,12 +160,25 @@ TEST(ScanCodec, RejectsBadPointCounts) {
   EXPECT_EQ(reason_of(bytes), "size");
 }
 
-TEST(ScanCodec, UnknownTypeNamesBothFingerprints) {
-  const auto scan = decode_scan(encoded(pose_message(5)), kMaxBytes);
+TEST(ScanCodec, UnknownTypeNamesTheFingerprintsThatAreKnown) {
+  auto message = encoded(pose_message(5));
+  message[0] ^= 1;
+  const auto scan = decode_scan(message, kMaxBytes);
   ASSERT_FALSE(scan);
   EXPECT_EQ(scan.error().reason, "unknown_type");
-  EXPECT_NE(scan.error().message.find("0x2e16efb052b0105e is neither planemap_lcm.depth_scan_t (0x"), std::string::npos)
+  EXPECT_NE(scan.error().message.find("0x2f16efb052b0105e is none of the types that carry scans: "
+                                      "planemap_lcm.depth_scan_t (0x"),
+            std::string::npos)
       << scan.error().message;
+  EXPECT_NE(scan.error().message.find("drake.lcmt_point_cloud (0x17f2c128b5d25a95)"), std::string::npos);
+}
+
+TEST(ScanCodec, APoseAmongScansIsToldFromAnUnknownType) {
+  const auto scan = decode_scan(encoded(pose_message(5)), kMaxBytes);
+  ASSERT_FALSE(scan);
+  EXPECT_EQ(scan.error().reason, "wrong_channel");
+  EXPECT_EQ(scan.error().message,
+            "bot_core.pose_t (0x2e16efb052b0105e) is a pose, which belongs on inputs[].pose_channel");
 }
 
 TEST(PoseCodec, PoseComesBackNormalised) {
@@ -205,7 +218,9 @@ TEST(PoseCodec, RejectsWhatIsNoPose) {
   auto bytes = encoded(pose_message(5));
   bytes.pop_back();
   EXPECT_EQ(decode_pose(bytes).error().reason, "size");
-  EXPECT_EQ(decode_pose(encoded(wall_message(5, 1))).error().reason, "unknown_type");
+  const auto scan = decode_pose(encoded(wall_message(5, 1)));
+  EXPECT_EQ(scan.error().reason, "wrong_channel");
+  EXPECT_NE(scan.error().message.find(") is a scan, which belongs on inputs[].channel"), std::string::npos);
   EXPECT_EQ(decode_pose({}).error().reason, "unknown_type");
 }
 

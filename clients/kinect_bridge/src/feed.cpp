@@ -39,10 +39,9 @@ std::optional<Feed::Prepared> Feed::prepare() {
   }
   prepared.utime = options_.wall_clock ? first_wall_utime_ + prepared.offset_us : frame->scan.utime;
   prepared.T_world_sensor = frame->T_world_sensor;
-  auto message = to_message(frame->scan, options_.encoding);
-  message.utime = prepared.utime;
-  message.seq = static_cast<std::int32_t>(prepared_ & 0x7fffffffU);
-  prepared.scan = encode(message);
+  prepared.intrinsics = frame->scan.intrinsics;
+  frame->scan.utime = prepared.utime;
+  prepared.scan = encoded_scan(frame->scan, static_cast<std::int32_t>(prepared_ & 0x7fffffffU), options_.format);
   ++prepared_;
   return prepared;
 }
@@ -60,7 +59,8 @@ Expected<void> Feed::send(const std::string& channel, std::int64_t utime, const 
 }
 
 Expected<void> Feed::send_frame(const Prepared& frame) {
-  if (auto sent = send(options_.pose_channel, frame.utime, encode(to_message(frame.T_world_sensor, frame.utime)));
+  if (auto sent =
+          send(options_.pose_channel, frame.utime, encoded_pose(frame.T_world_sensor, frame.utime, options_.format));
       !sent) {
     return sent;
   }
@@ -68,6 +68,7 @@ Expected<void> Feed::send_frame(const Prepared& frame) {
   if (auto sent = send(options_.channel, frame.utime, frame.scan); !sent) return sent;
   if (report_.frames == 0) report_.first_utime = frame.utime;
   report_.last_utime = frame.utime;
+  report_.intrinsics = frame.intrinsics;
   ++report_.frames;
   return {};
 }
@@ -90,7 +91,7 @@ Expected<void> Feed::send_poses_between(const Prepared& from, const Prepared& to
     // Between two recorded times where those are published, which --rate may stretch.
     const std::int64_t utime =
         from.utime + std::llround(after_us / period_us * static_cast<double>(to.utime - from.utime));
-    if (auto sent = send(options_.pose_channel, utime, encode(to_message(pose, utime))); !sent) return sent;
+    if (auto sent = send(options_.pose_channel, utime, encoded_pose(pose, utime, options_.format)); !sent) return sent;
     ++report_.poses;
   }
 }

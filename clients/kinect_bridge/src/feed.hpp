@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/format.hpp"
 #include "sink.hpp"
-#include "wire.hpp"
 
 namespace planemap::kinect_bridge {
 
@@ -19,7 +19,7 @@ namespace planemap::kinect_bridge {
 struct FeedOptions {
   std::string channel = "PLANEMAP_SCAN";
   std::string pose_channel = "POSE";
-  Encoding encoding = Encoding::kZlib;
+  WireFormat format;
   std::optional<std::size_t> frames;   ///< stop after so many
   std::optional<double> rate_hz;       ///< frames a second; empty: as recorded
   std::optional<double> pose_rate_hz;  ///< poses in between, interpolated; empty: one with each frame
@@ -36,7 +36,8 @@ struct FeedReport {
   std::uint64_t bytes = 0;
   std::int64_t first_utime = 0;  ///< microseconds, as published
   std::int64_t last_utime = 0;
-  bool stopped = false;  ///< before the source's end
+  PinholeIntrinsics intrinsics;  ///< of the last frame
+  bool stopped = false;          ///< before the source's end
 };
 
 /// Waits until a time; true: stop.
@@ -60,6 +61,7 @@ class Feed {
     std::int64_t offset_us = 0;  ///< since the first frame
     std::int64_t utime = 0;      ///< as published
     Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+    PinholeIntrinsics intrinsics;
     std::vector<std::uint8_t> scan;
   };
   std::optional<Prepared> prepare();

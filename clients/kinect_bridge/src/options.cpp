@@ -22,7 +22,9 @@ struct Raw {
   std::optional<std::size_t> frames;
   double pose_noise_deg = 0.0;
   bool wall_clock = false;
-  std::string encoding = "zlib";
+  std::string format = "depth_scan";
+  std::string pose_format = "pose";
+  std::string encoding;
 };
 
 /// A check without words in the help, where the type's name says enough.
@@ -44,6 +46,29 @@ std::string scenes_text() {
     std::string line = "  " + std::string(scene.name);
     line.resize(20, ' ');
     text += line + std::string(scene.shows) + "\n";
+  }
+  return text + "\n";
+}
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names;
+  for (const ScanTypeInfo& info : scan_types()) names.emplace_back(info.name);
+  return names;
+}
+
+std::vector<std::string> pose_format_names() {
+  std::vector<std::string> names;
+  for (const PoseTypeInfo& info : pose_types()) names.emplace_back(info.name);
+  return names;
+}
+
+/// For the help: each format with the type that it is.
+std::string formats_text() {
+  std::string text = "Formats:\n";
+  for (const ScanTypeInfo& info : scan_types()) {
+    std::string line = "  " + std::string(info.name);
+    line.resize(20, ' ');
+    text += line + info.carries + "\n";
   }
   return text + "\n";
 }
@@ -121,10 +146,17 @@ void add_output_options(CLI::App& app, Options& options, Raw& raw) {
                  "poses a second between the frames, interpolated (default: one with each frame)")
       ->type_name("HZ")
       ->check(in_range(0.001, kMaxRateHz));
-  app.add_option("--encoding", raw.encoding, "of the depth images")
-      ->type_name("WORD")
+  app.add_option("--format", raw.format, "what the scans are sent as, to try out other stacks' types; see below")
+      ->type_name("NAME")
       ->capture_default_str()
-      ->check(CLI::IsMember({"zlib", "raw"}));
+      ->check(CLI::IsMember(format_names()).description(""));
+  app.add_option("--pose-format", raw.pose_format, "what the poses are sent as")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->check(CLI::IsMember(pose_format_names()));
+  app.add_option("--encoding", raw.encoding, "of the depth images (default: zlib where the format knows it, else raw)")
+      ->type_name("WORD")
+      ->check(CLI::IsMember({"zlib", "raw", "png"}));
   app.add_option("--channel", options.feed.channel, "of the scans")->type_name("NAME")->capture_default_str();
   app.add_option("--pose-channel", options.feed.pose_channel, "of the poses")->type_name("NAME")->capture_default_str();
   auto* url = app.add_option("-l,--lcm-url", options.lcm_url,
@@ -149,6 +181,26 @@ void check_channel(const std::string& option, const std::string& channel) {
   }
 }
 
+WireFormat wire_format(const Options& options, const Raw& raw) {
+  WireFormat format;
+  for (const ScanTypeInfo& info : scan_types()) {
+    if (raw.format != info.name) continue;
+    format.scan = info.type;
+    const bool is_known =
+        raw.encoding.empty() || raw.encoding == "raw" || (raw.encoding == "png" ? info.knows_png : info.knows_zlib);
+    if (!is_known) throw CLI::ValidationError("--encoding", raw.format + " knows no " + raw.encoding);
+    format.encoding = raw.encoding == "png"                      ? Encoding::kPng
+                      : raw.encoding != "raw" && info.knows_zlib ? Encoding::kZlib
+                                                                 : Encoding::kRaw;
+  }
+  for (const PoseTypeInfo& info : pose_types()) {
+    if (raw.pose_format == info.name) format.pose = info.type;
+  }
+  format.pose_sigma_m = options.simulation.pose_noise.sigma_m;
+  format.pose_sigma_rad = raw.pose_noise_deg * std::numbers::pi / 180.0;
+  return format;
+}
+
 /// What follows from the options together.
 void complete(Options& options, const Raw& raw) {
   check_channel("--channel", options.feed.channel);
@@ -158,7 +210,7 @@ void complete(Options& options, const Raw& raw) {
     if (!camera) throw CLI::ValidationError("--intrinsics", camera.error().message);
     options.folder.camera = *camera;
   }
-  options.feed.encoding = raw.encoding == "raw" ? Encoding::kRaw : Encoding::kZlib;
+  options.feed.format = wire_format(options, raw);
   const bool simulated = options.dataset.empty();
   const bool logged = !options.log_path.empty();
   if (logged && options.loop && !raw.frames) {
@@ -189,7 +241,7 @@ ParsedOptions parse_options(int argc, char** argv) {
   CLI::App app("Feeds planemap: publishes a recorded or a simulated Kinect's depth images and poses over LCM.",
                "planemap-kinect-bridge");
   app.set_version_flag("--version", "planemap-kinect-bridge " PLANEMAP_VERSION, "Print the version and exit");
-  app.footer(scenes_text() + "Exit codes: 0 done or stopped by a signal, 1 failed, 2 wrong use.");
+  app.footer(scenes_text() + formats_text() + "Exit codes: 0 done or stopped by a signal, 1 failed, 2 wrong use.");
   Options options;
   Raw raw;
   add_source_options(app, options, raw);

@@ -14,6 +14,8 @@ std::string summary_text(const Summary& summary, const Options& options) {
   for (const auto& entry : summary.skipped) text += fmt::format("skipped {} frames: {}\n", entry.second, entry.first);
   if (report.late > 0)
     text += fmt::format("{} frames were late: this machine can't keep up with the rate\n", report.late);
+  const std::string settings = settings_for(options.feed.format.scan, report.intrinsics);
+  if (report.frames > 0 && !settings.empty()) text += "such scans need: planemapd " + settings + "\n";
   if (report.unsent > 0) text += fmt::format("{} messages could not be sent\n", report.unsent);
   return text;
 }
@@ -25,6 +27,8 @@ std::string summary_json(const Summary& summary, const Options& options) {
                                  {"lateFrames", report.late},      {"unsentMessages", report.unsent},
                                  {"skipped", summary.skipped},     {"firstUtime", report.first_utime},
                                  {"lastUtime", report.last_utime}, {"stopped", report.stopped}};
+  const PinholeIntrinsics& camera = report.intrinsics;
+  if (report.frames > 0) json["intrinsics"] = {camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height};
   if (options.log_path.empty()) {
     json["lcmUrl"] = options.lcm_url;
   } else {

@@ -2,33 +2,9 @@
 
 #include <zlib.h>
 
-#include <stdexcept>
+#include "formats/pixels.hpp"
 
 namespace planemap::kinect_bridge {
-namespace {
-
-std::vector<std::uint8_t> little_endian(const std::vector<std::uint16_t>& depth) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(2 * depth.size());
-  for (const std::uint16_t value : depth) {
-    bytes.push_back(static_cast<std::uint8_t>(value & 0xffU));
-    bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
-  }
-  return bytes;
-}
-
-std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& raw) {
-  uLongf size = compressBound(static_cast<uLong>(raw.size()));
-  std::vector<std::uint8_t> bytes(size);
-  if (compress2(bytes.data(), &size, raw.data(), static_cast<uLong>(raw.size()), Z_BEST_SPEED) != Z_OK) {
-    throw std::runtime_error("zlib could not compress a depth image");
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
-}  // namespace
-
 planemap_lcm::depth_scan_t to_message(const DepthScan& scan, Encoding encoding) {
   planemap_lcm::depth_scan_t message{};
   message.utime = scan.utime;

@@ -12,9 +12,10 @@ namespace planemap::kinect_bridge {
 enum class Encoding {
   kZlib,  ///< level 1: a sixth of the bytes
   kRaw,
+  kPng,  ///< 16-bit grey; not of depth_scan_t
 };
 
-/// The message of a scan; its utime and seq are for whoever sends it.
+/// The message of a scan, raw or through zlib; its seq is for whoever sends it.
 planemap_lcm::depth_scan_t to_message(const DepthScan& scan, Encoding encoding);
 
 /// The message of a pose. The body is the sensor: T_body_sensor is the identity.

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <bot_core/pose_t.hpp>
+#include <bot_core/rigid_transform_t.hpp>
 #include <cmath>
 #include <optional>
 #include <pronto/rigid_body_pose_cov_t.hpp>
 
+#include "codec/fingerprint.hpp"
 #include "codec/wire_reader.hpp"
 
 namespace planemap::service {
@@ -17,6 +19,8 @@ namespace {
 
 // Fingerprint, utime, and five arrays of doubles; only position and orientation mean the same in every stack.
 constexpr std::size_t kPoseBytes = 8 + 8 + 8 * (3 + 3 + 4 + 3 + 3);
+// Fingerprint, utime, position, quaternion.
+constexpr std::size_t kTransformBytes = 8 + 8 + 8 * (3 + 4);
 // Fingerprint, utime, quaternion, position, 6x6 covariance, six flags.
 constexpr std::size_t kPoseCovBytes = 8 + 8 + 8 * (4 + 3 + 36) + 6;
 constexpr double kUnitTolerance = 1e-3;
@@ -26,10 +30,6 @@ constexpr double kRounding = 1e-6;
 // The limits of pose.sigma_m and pose.sigma_rad: beyond, a pose says nothing, and a rotation is not small any more.
 constexpr double kMaxSigmaM = 10.0;
 constexpr double kMaxSigmaRad = 1.0;
-
-tl::unexpected<Rejection> reject(const char* reason, std::string message) {
-  return tl::make_unexpected(Rejection{reason, std::move(message)});
-}
 
 using Numbers4 = std::array<double, 4>;
 
@@ -57,6 +57,15 @@ Decoded<StampedPose> decode_plain(WireReader reader) {
   Numbers4 wxyz{};
   for (double& x : wxyz) x = reader.f64();
   return to_pose("pose_t", utime, position, wxyz);
+}
+
+Decoded<StampedPose> decode_transform(WireReader reader) {
+  const std::int64_t utime = reader.i64();
+  Eigen::Vector3d position;
+  for (double& x : position) x = reader.f64();
+  Numbers4 wxyz{};
+  for (double& x : wxyz) x = reader.f64();
+  return to_pose("rigid_transform_t", utime, position, wxyz);
 }
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -137,26 +146,52 @@ Decoded<StampedPose> decode_with_covariance(WireReader reader) {
   return pose;
 }
 
+/// A type of pose: its length never changes.
+struct PoseType {
+  std::int64_t fingerprint;
+  const char* name;
+  std::size_t bytes;
+  Decoded<StampedPose> (*decode)(WireReader);
+};
+
+const auto& pose_types() {
+  static const std::array types = {
+      PoseType{bot_core::pose_t::getHash(), "pose_t", kPoseBytes, decode_plain},
+      PoseType{bot_core::rigid_transform_t::getHash(), "rigid_transform_t", kTransformBytes, decode_transform},
+      PoseType{pronto::rigid_body_pose_cov_t::getHash(), "rigid_body_pose_cov_t", kPoseCovBytes,
+               decode_with_covariance},
+  };
+  return types;
+}
+
+tl::unexpected<Rejection> no_pose(std::span<const std::uint8_t> message) {
+  const std::uint64_t fingerprint = fingerprint_of(message);
+  if (const KnownType* type = known_type(fingerprint)) {
+    return reject("wrong_channel",
+                  fmt::format("{} ({}) is {}", type->name, fingerprint_text(fingerprint), type->belongs));
+  }
+  const auto text = [](std::int64_t hash) { return fingerprint_text(static_cast<std::uint64_t>(hash)); };
+  return reject(
+      "unknown_type",
+      fmt::format("fingerprint {} is none of the types that carry poses: bot_core.pose_t ({}), "
+                  "bot_core.rigid_transform_t ({}), pronto.rigid_body_pose_cov_t ({})",
+                  fingerprint_text(fingerprint), text(bot_core::pose_t::getHash()),
+                  text(bot_core::rigid_transform_t::getHash()), text(pronto::rigid_body_pose_cov_t::getHash())));
+}
+
 }  // namespace
 
 Decoded<StampedPose> decode_pose(std::span<const std::uint8_t> message) {
   WireReader reader(message);
   const std::int64_t fingerprint = reader.i64();
-  const bool is_plain = reader.ok() && fingerprint == bot_core::pose_t::getHash();
-  const bool has_covariance = reader.ok() && fingerprint == pronto::rigid_body_pose_cov_t::getHash();
-  if (!is_plain && !has_covariance) {
-    return reject("unknown_type",
-                  fmt::format("fingerprint {} is neither bot_core.pose_t ({}) nor pronto.rigid_body_pose_cov_t ({})",
-                              fingerprint_text(fingerprint_of(message)),
-                              fingerprint_text(static_cast<std::uint64_t>(bot_core::pose_t::getHash())),
-                              fingerprint_text(static_cast<std::uint64_t>(pronto::rigid_body_pose_cov_t::getHash()))));
+  const auto& types = pose_types();
+  const auto type =
+      std::find_if(types.begin(), types.end(), [&](const PoseType& t) { return t.fingerprint == fingerprint; });
+  if (!reader.ok() || type == types.end()) return no_pose(message);
+  if (message.size() != type->bytes) {
+    return reject("size", fmt::format("{}: {} bytes, must be {}", type->name, message.size(), type->bytes));
   }
-  const std::size_t size = is_plain ? kPoseBytes : kPoseCovBytes;
-  if (message.size() != size) {
-    return reject("size", fmt::format("{}: {} bytes, must be {}", is_plain ? "pose_t" : "rigid_body_pose_cov_t",
-                                      message.size(), size));
-  }
-  return is_plain ? decode_plain(reader) : decode_with_covariance(reader);
+  return type->decode(reader);
 }
 
 }  // namespace planemap::service

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <planemap_lcm/request_t.hpp>
 
+#include "codec/fingerprint.hpp"
 #include "codec/wire_reader.hpp"
 #include "config/service_config.hpp"
 
@@ -13,10 +14,6 @@ namespace planemap::service {
 namespace {
 
 constexpr std::string_view kReplyPrefix = "PLANEMAP_REPLY";
-
-tl::unexpected<Rejection> reject(const char* reason, std::string message) {
-  return tl::make_unexpected(Rejection{reason, std::move(message)});
-}
 
 /// LCM's string: a length that counts the zero at the end, then the characters.
 Decoded<std::string> read_reply_channel(WireReader& reader) {

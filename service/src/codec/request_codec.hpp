@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/scan_codec.hpp"
+#include "codec/rejection.hpp"
 
 namespace planemap::service {
 

@@ -1,229 +1,62 @@
 #include "codec/scan_codec.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-#include <planemap_lcm/depth_scan_t.hpp>
-#include <planemap_lcm/point_scan_t.hpp>
-
-#include "codec/wire_reader.hpp"
+#include "codec/scans/families.hpp"
 
 namespace planemap::service {
 namespace {
 
-using planemap_lcm::depth_scan_t;
-using planemap_lcm::point_scan_t;
-
-constexpr std::int32_t kMaxImageEdge = 4096;        // pixels; depth_scan_t.lcm
-constexpr std::int32_t kMaxPointValues = 30000000;  // floats; point_scan_t.lcm
-constexpr std::size_t kMaxZlibRatio = 1032;         // deflate packs no denser
-constexpr double kMaxSlope = 100.0;  // x/z of a pixel: 89.4 degrees; keeps points within the grid's integers
-
-tl::unexpected<Rejection> reject(const char* reason, std::string message) {
-  return tl::make_unexpected(Rejection{reason, std::move(message)});
-}
-
-std::uint32_t checksum(std::span<const std::uint8_t> bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(crc32_z(before, bytes.data(), bytes.size()));
-}
-
-/// What stands before the pixels of a depth_scan_t.
-struct DepthHeader {
-  DepthScan scan;  ///< without its pixels
-  std::int32_t seq = 0;
-  std::int8_t encoding = 0;
-  std::span<const std::uint8_t> data;
-  std::uint32_t crc32 = 0;
-};
-
-Decoded<DepthHeader> read_depth_header(WireReader& reader, std::size_t message_bytes) {
-  DepthHeader header;
-  header.scan.utime = reader.i64();
-  header.seq = reader.i32();
-  auto& camera = header.scan.intrinsics;
-  camera.width = reader.i32();
-  camera.height = reader.i32();
-  camera.fx = reader.f64();
-  camera.fy = reader.f64();
-  camera.cx = reader.f64();
-  camera.cy = reader.f64();
-  header.scan.depth_scale_m = reader.f64();
-  header.encoding = reader.i8();
-  const std::int32_t size = reader.i32();
-  if (!reader.ok())
-    return reject("truncated", fmt::format("depth_scan_t: ends within its header, at byte {}", message_bytes));
-  if (size < 0 || static_cast<std::size_t>(size) + 4 != reader.remaining()) {
-    return reject("size", fmt::format("depth_scan_t: size is {}, but {} bytes follow (4 of them the checksum)", size,
-                                      reader.remaining()));
+Decoded<const KnownType*> wanted_type(std::span<const std::uint8_t> message, const ScanFormat& format) {
+  if (message.size() < 8) {
+    return reject("truncated", fmt::format("a message of {} bytes, shorter than a fingerprint", message.size()));
   }
-  header.data = reader.bytes(static_cast<std::size_t>(size));
-  header.crc32 = static_cast<std::uint32_t>(reader.i32());
-  return header;
-}
-
-bool is_positive(double value) {
-  return std::isfinite(value) && value > 0.0;
-}
-
-Decoded<std::size_t> check_depth_header(const DepthHeader& header, std::size_t max_bytes) {
-  const auto& camera = header.scan.intrinsics;
-  if (header.scan.utime <= 0)
-    return reject("time", fmt::format("depth_scan_t: utime is {}, must be > 0", header.scan.utime));
-  if (camera.width < 1 || camera.width > kMaxImageEdge || camera.height < 1 || camera.height > kMaxImageEdge) {
-    return reject("size", fmt::format("depth_scan_t: {} x {} pixels (allowed: 1 to {} each)", camera.width,
-                                      camera.height, kMaxImageEdge));
+  const std::uint64_t fingerprint = fingerprint_of(message);
+  const KnownType* type = known_type(fingerprint);
+  if (type == nullptr) {
+    return reject("unknown_type", fmt::format("fingerprint {} is none of the types that carry scans: {}",
+                                              fingerprint_text(fingerprint), scan_types_text()));
   }
-  const std::size_t image_bytes = 2 * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  if (image_bytes > max_bytes) {
-    return reject("too_large", fmt::format("depth_scan_t: {} x {} pixels are {} bytes, limits.image_bytes is {}",
-                                           camera.width, camera.height, image_bytes, max_bytes));
+  if (type->family == ScanFamily::kAuto) {
+    return reject("wrong_channel",
+                  fmt::format("{} ({}) is {}", type->name, fingerprint_text(fingerprint), type->belongs));
   }
-  if (!is_positive(camera.fx) || !is_positive(camera.fy) || !std::isfinite(camera.cx) || !std::isfinite(camera.cy)) {
-    return reject("intrinsics", fmt::format("depth_scan_t: fx {} fy {} cx {} cy {} (allowed: finite, fx and fy > 0)",
-                                            camera.fx, camera.fy, camera.cx, camera.cy));
+  if (format.family != ScanFamily::kAuto && type->family != format.family) {
+    return reject("wrong_channel", fmt::format("{} ({}) is a scan of another family than inputs[].family says: {} ({})",
+                                               type->name, fingerprint_text(fingerprint), type_of(format.family).name,
+                                               fingerprint_text(type_of(format.family).fingerprint)));
   }
-  const double slope_x = std::max(std::abs(camera.cx), std::abs(camera.width - camera.cx)) / camera.fx;
-  const double slope_y = std::max(std::abs(camera.cy), std::abs(camera.height - camera.cy)) / camera.fy;
-  if (slope_x > kMaxSlope || slope_y > kMaxSlope) {
-    return reject("intrinsics",
-                  fmt::format("depth_scan_t: fx {} fy {} cx {} cy {} with {} x {} pixels look more than 89 "
-                              "degrees to the side",
-                              camera.fx, camera.fy, camera.cx, camera.cy, camera.width, camera.height));
-  }
-  if (!is_positive(header.scan.depth_scale_m)) {
-    return reject("intrinsics",
-                  fmt::format("depth_scan_t: depth_scale_m is {}, must be finite and > 0", header.scan.depth_scale_m));
-  }
-  return image_bytes;
-}
-
-/// Decompresses into exactly `pixels`; the stream has to end with its last byte.
-Decoded<bool> inflate_exactly(std::span<const std::uint8_t> data, std::span<std::uint16_t> pixels) {
-  z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return reject("encoding", "depth_scan_t: zlib cannot start");
-  stream.next_in = const_cast<Bytef*>(data.data());  // zlib's interface; it does not write there
-  stream.avail_in = static_cast<uInt>(data.size());
-  stream.next_out = reinterpret_cast<Bytef*>(pixels.data());
-  stream.avail_out = static_cast<uInt>(pixels.size_bytes());
-  const int result = inflate(&stream, Z_FINISH);
-  const std::size_t written = pixels.size_bytes() - stream.avail_out;
-  const bool is_whole = result == Z_STREAM_END && stream.avail_out == 0 && stream.avail_in == 0;
-  inflateEnd(&stream);
-  if (is_whole) return true;
-  return reject("encoding", fmt::format("depth_scan_t: zlib data of {} bytes gave {} of {} bytes of pixels (zlib: {})",
-                                        data.size(), written, pixels.size_bytes(), result));
-}
-
-Decoded<DecodedScan> decode_depth_scan(WireReader reader, std::size_t message_bytes, std::size_t max_bytes) {
-  auto header = read_depth_header(reader, message_bytes);
-  if (!header) return tl::make_unexpected(header.error());
-  const auto image_bytes = check_depth_header(*header, max_bytes);
-  if (!image_bytes) return tl::make_unexpected(image_bytes.error());
-  const bool is_raw = header->encoding == depth_scan_t::ENCODING_RAW;
-  if (!is_raw && header->encoding != depth_scan_t::ENCODING_ZLIB) {
-    return reject("encoding", fmt::format("depth_scan_t: encoding is {} (allowed: {} raw, {} zlib)", header->encoding,
-                                          depth_scan_t::ENCODING_RAW, depth_scan_t::ENCODING_ZLIB));
-  }
-  if (is_raw && header->data.size() != *image_bytes) {
-    return reject("size",
-                  fmt::format("depth_scan_t: {} bytes of raw data for {} x {} pixels, must be {}", header->data.size(),
-                              header->scan.intrinsics.width, header->scan.intrinsics.height, *image_bytes));
-  }
-  if (!is_raw && header->data.size() * kMaxZlibRatio < *image_bytes) {
-    return reject("size",
-                  fmt::format("depth_scan_t: {} bytes of zlib data cannot hold {} x {} pixels", header->data.size(),
-                              header->scan.intrinsics.width, header->scan.intrinsics.height));
-  }
-  // Checked before the pixels are unpacked: what was damaged on the way is not worth the work.
-  if (const auto sum = checksum(header->data); sum != header->crc32) {
-    return reject("checksum", fmt::format("depth_scan_t: crc32 of {} bytes is {:08x}, the message says {:08x}",
-                                          header->data.size(), sum, header->crc32));
-  }
-  auto& depth = header->scan.depth;
-  depth.resize(*image_bytes / 2);
-  if (is_raw) {
-    std::memcpy(depth.data(), header->data.data(), *image_bytes);
-  } else if (const auto inflated = inflate_exactly(header->data, depth); !inflated) {
-    return tl::make_unexpected(inflated.error());
-  }
-  return DecodedScan{std::move(header->scan), header->seq};
-}
-
-/// Takes a count of floats and the floats' bytes off the reader.
-Decoded<std::span<const std::uint8_t>> take_floats(WireReader& reader, const char* name, std::size_t max_bytes) {
-  const std::int32_t count = reader.i32();
-  if (!reader.ok()) return reject("truncated", fmt::format("point_scan_t: ends before {}", name));
-  if (count < 0 || count > kMaxPointValues) {
-    return reject("size", fmt::format("point_scan_t: {} is {} (allowed: 0 to {})", name, count, kMaxPointValues));
-  }
-  const std::size_t bytes = 4 * static_cast<std::size_t>(count);
-  if (bytes > max_bytes) {
-    return reject("too_large", fmt::format("point_scan_t: {} is {}, {} bytes; limits.image_bytes is {}", name, count,
-                                           bytes, max_bytes));
-  }
-  if (bytes > reader.remaining()) {
-    return reject("size",
-                  fmt::format("point_scan_t: {} is {}, but only {} bytes follow", name, count, reader.remaining()));
-  }
-  return reader.bytes(bytes);
-}
-
-Decoded<DecodedScan> decode_point_scan(WireReader reader, std::size_t max_bytes) {
-  PointScan scan;
-  scan.utime = reader.i64();
-  const std::int32_t seq = reader.i32();
-  const auto xyz = take_floats(reader, "n_values", max_bytes);
-  if (!xyz) return tl::make_unexpected(xyz.error());
-  const auto sigma = take_floats(reader, "n_sigma", max_bytes);
-  if (!sigma) return tl::make_unexpected(sigma.error());
-  const auto said_crc32 = static_cast<std::uint32_t>(reader.i32());
-  if (!reader.ok()) return reject("truncated", "point_scan_t: ends before crc32");
-  if (reader.remaining() != 0)
-    return reject("size", fmt::format("point_scan_t: {} bytes too many", reader.remaining()));
-  if (scan.utime <= 0) return reject("time", fmt::format("point_scan_t: utime is {}, must be > 0", scan.utime));
-  if (xyz->size() % 12 != 0) {
-    return reject("size", fmt::format("point_scan_t: n_values is {}, must be a multiple of 3", xyz->size() / 4));
-  }
-  if (!sigma->empty() && sigma->size() != xyz->size()) {
-    return reject("size", fmt::format("point_scan_t: n_sigma is {}, must be 0 or n_values ({})", sigma->size() / 4,
-                                      xyz->size() / 4));
-  }
-  if (const auto sum = checksum(*sigma, checksum(*xyz)); sum != said_crc32) {
-    return reject("checksum", fmt::format("point_scan_t: crc32 is {:08x}, the message says {:08x}", sum, said_crc32));
-  }
-  scan.xyz_m.resize(xyz->size() / 4);
-  copy_big_endian_floats(*xyz, scan.xyz_m);
-  scan.sigma_m.resize(sigma->size() / 4);
-  copy_big_endian_floats(*sigma, scan.sigma_m);
-  return DecodedScan{std::move(scan), seq};
+  return type;
 }
 
 }  // namespace
 
-std::uint64_t fingerprint_of(std::span<const std::uint8_t> message) {
-  return static_cast<std::uint64_t>(WireReader(message).i64());
-}
-
-std::string fingerprint_text(std::uint64_t fingerprint) {
-  return fmt::format("0x{:016x}", fingerprint);
-}
-
-Decoded<DecodedScan> decode_scan(std::span<const std::uint8_t> message, std::size_t max_bytes) {
-  WireReader reader(message);
-  const std::int64_t fingerprint = reader.i64();
-  if (!reader.ok()) {
-    return reject("truncated", fmt::format("a message of {} bytes, shorter than a fingerprint", message.size()));
+Decoded<DecodedScan> decode_scan(std::span<const std::uint8_t> message, std::size_t max_bytes,
+                                 const ScanFormat& format) {
+  const auto type = wanted_type(message, format);
+  if (!type) return tl::make_unexpected(type.error());
+  const WireReader reader(message.subspan(8));
+  switch ((*type)->family) {
+    case ScanFamily::kDepthScan:
+      return decode_depth_scan(reader, message.size(), max_bytes);
+    case ScanFamily::kPointScan:
+      return decode_point_scan(reader, max_bytes);
+    case ScanFamily::kKinectFrame:
+      return decode_kinect_frame(reader, format, max_bytes);
+    case ScanFamily::kImages:
+      return decode_images(reader, format, max_bytes);
+    case ScanFamily::kImage:
+      return decode_image(reader, format, max_bytes);
+    case ScanFamily::kImageArray:
+      return decode_image_array(reader, format, max_bytes);
+    case ScanFamily::kPointCloud2:
+      return decode_point_cloud2(reader, format, max_bytes);
+    case ScanFamily::kPointCloud:
+      return decode_point_cloud(reader, format, max_bytes);
+    case ScanFamily::kAuto:
+      break;
   }
-  if (fingerprint == depth_scan_t::getHash()) return decode_depth_scan(reader, message.size(), max_bytes);
-  if (fingerprint == point_scan_t::getHash()) return decode_point_scan(reader, max_bytes);
-  return reject(
-      "unknown_type",
-      fmt::format("fingerprint {} is neither planemap_lcm.depth_scan_t ({}) nor planemap_lcm.point_scan_t ({})",
-                  fingerprint_text(fingerprint_of(message)),
-                  fingerprint_text(static_cast<std::uint64_t>(depth_scan_t::getHash())),
-                  fingerprint_text(static_cast<std::uint64_t>(point_scan_t::getHash()))));
+  return reject("unknown_type", "a type without a decoder");
 }
 
 }  // namespace planemap::service

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 namespace planemap::service {
@@ -32,6 +33,14 @@ class WireReader {
     return ok_ ? static_cast<std::size_t>(value) : 0;
   }
   double f64() { return std::bit_cast<double>(big_endian<std::uint64_t>()); }
+
+  bool boolean() { return i8() != 0; }
+  /// A string, where it is, without the 0 at its end; not ok() where there is no such 0.
+  std::string_view text() {
+    const auto chars = bytes(count(1));
+    ok_ = ok_ && !chars.empty() && chars.back() == 0;
+    return ok_ ? std::string_view(reinterpret_cast<const char*>(chars.data()), chars.size() - 1) : std::string_view();
+  }
 
   /// The next `count` bytes where they are; empty and not ok() if there are not so many.
   std::span<const std::uint8_t> bytes(std::size_t count) {

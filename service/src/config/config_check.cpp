@@ -37,9 +37,42 @@ void check_channel_name(const std::string& key, const std::string& name, ConfigP
   if (!plain) problems.add(key, "a channel's name must be printable ASCII without spaces");
 }
 
+/// Families whose messages say nothing of the camera.
+bool needs_intrinsics(ScanFamily family) {
+  return family == ScanFamily::kKinectFrame || family == ScanFamily::kImages || family == ScanFamily::kImage ||
+         family == ScanFamily::kImageArray;
+}
+
+void check_camera(const std::string& path, const InputConfig& input, ConfigProblems& problems) {
+  const auto& k = input.intrinsics;
+  const auto is_whole = [](double pixels) { return pixels >= 1.0 && pixels <= 4096.0 && std::floor(pixels) == pixels; };
+  if (k.empty()) {
+    if (needs_intrinsics(input.family)) {
+      problems.add(path + ".intrinsics", "are missing: the family's messages bring none; [fx, fy, cx, cy] in pixels");
+    }
+  } else if (k.size() != 4 && k.size() != 6) {
+    problems.add(path + ".intrinsics",
+                 fmt::format("has {} numbers, must have 4 (fx, fy, cx, cy) or 6 (width and height, too)", k.size()));
+  } else if (k[0] <= 0.0 || k[1] <= 0.0) {
+    problems.add(path + ".intrinsics", fmt::format("fx {} and fy {} must be above 0", k[0], k[1]));
+  } else if (k.size() == 6 && (!is_whole(k[4]) || !is_whole(k[5]))) {
+    problems.add(path + ".intrinsics",
+                 fmt::format("width {} and height {} must be whole numbers of 1 to 4096 pixels", k[4], k[5]));
+  }
+  const auto& d = input.disparity;
+  if (d.size() == 1)
+    problems.add(path + ".disparity", "has 1 number, must have 2 (baseline in metres, offset) or none");
+  if (d.size() == 2 && (d[0] <= 0.0 || d[0] > 1.0 || d[1] <= 0.0 || d[1] > 10000.0)) {
+    problems.add(
+        path + ".disparity",
+        fmt::format("baseline {} must be above 0 and at most 1 m, offset {} above 0 and at most 10000", d[0], d[1]));
+  }
+}
+
 void check_input(const std::string& path, InputConfig& input, ConfigProblems& problems) {
   check_channel_name(path + ".channel", input.channel, problems);
   check_channel_name(path + ".pose_channel", input.pose_channel, problems);
+  check_camera(path, input, problems);
   check_less(path, "min_range_m", input.min_range_m, "max_range_m", input.max_range_m, problems);
   const double norm = norm_of(input.rotation_wxyz);
   if (std::abs(norm - 1.0) > kUnitTolerance) {
@@ -80,6 +113,9 @@ void check_channel_uses(const ServiceConfig& config, ConfigProblems& problems) {
   claim("publish.status_channel", config.publish.status_channel, false);
   claim("publish.delta_channel", config.publish.delta_channel, false);
   claim("publish.request_channel", config.publish.request_channel, false);
+  if (!config.publish.point_cloud_channel.empty()) {
+    claim("publish.point_cloud_channel", config.publish.point_cloud_channel, false);
+  }
 }
 
 void check_names(const std::vector<InputConfig>& inputs, ConfigProblems& problems) {
@@ -151,6 +187,7 @@ void check_config(ServiceConfig& config, ConfigProblems& problems) {
   check_channel_name("publish.status_channel", config.publish.status_channel, problems);
   check_channel_name("publish.delta_channel", config.publish.delta_channel, problems);
   check_channel_name("publish.request_channel", config.publish.request_channel, problems);
+  check_channel_name("publish.point_cloud_channel", config.publish.point_cloud_channel, problems);
   check_grpc(config.grpc, problems);
 }
 

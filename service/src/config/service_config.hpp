@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "codec/scan_format.hpp"
+
 namespace planemap::service {
 
 // Settings of the service, one struct a module; each lists its settings in visit_fields(), as those of core do. The
@@ -59,10 +61,31 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"max_m", "greatest corner in the body frame, x y z", 3, 3}, c.max_m);
 }
 
+/// The words for families.
+inline std::initializer_list<Choice<ScanFamily>> scan_family_choices() {
+  static const std::initializer_list<Choice<ScanFamily>> choices = {
+      {"auto", ScanFamily::kAuto},
+      {"depth_scan", ScanFamily::kDepthScan},
+      {"point_scan", ScanFamily::kPointScan},
+      {"kinect_frame", ScanFamily::kKinectFrame},
+      {"images", ScanFamily::kImages},
+      {"image", ScanFamily::kImage},
+      {"image_array", ScanFamily::kImageArray},
+      {"pointcloud2", ScanFamily::kPointCloud2},
+      {"point_cloud", ScanFamily::kPointCloud},
+  };
+  return choices;
+}
+
 /// One sensor.
 struct InputConfig {
   std::string name = "kinect";
   std::string channel = "PLANEMAP_SCAN";
+  ScanFamily family = ScanFamily::kAuto;  ///< the only type that is taken on the channel
+  std::string frame;                      ///< of the image or cloud, where messages name one; empty: any
+  std::vector<double> intrinsics;         ///< fx fy cx cy, or with width and height; empty: none
+  double depth_unit_m = 0.001;            ///< for types that don't say it
+  std::vector<double> disparity;          ///< baseline in metres and offset; empty: none
   std::string pose_channel = "POSE";
   std::vector<double> translation_m = {0.0, 0.0, 0.0};       ///< T_body_sensor: origin of the sensor in the body frame
   std::vector<double> rotation_wxyz = {1.0, 0.0, 0.0, 0.0};  ///< T_body_sensor: unit quaternion, sensor to body
@@ -75,9 +98,26 @@ struct InputConfig {
 template <MaybeConst<InputConfig> Config, class Visit>
 void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"name", "of the sensor, for logs and counters", 1, 64}, c.name);
-  visit(FieldInfo{"channel", "of its scans: planemap_lcm.depth_scan_t or point_scan_t", 1, kMaxChannelChars},
+  visit(FieldInfo{"channel", "of its scans; docs/lcm.md lists the types that it may carry", 1, kMaxChannelChars},
         c.channel);
-  visit(FieldInfo{"pose_channel", "of the body's poses: bot_core.pose_t or pronto.rigid_body_pose_cov_t", 1,
+  visit(FieldInfo{"family", "the only type that is taken there; auto: whichever comes, told by its fingerprint"},
+        c.family, scan_family_choices());
+  visit(FieldInfo{"frame", "which image of lcmt_image_array is meant, or the frame that clouds must be of; empty: any",
+                  0, 255},
+        c.frame);
+  visit(FieldInfo{"intrinsics",
+                  "fx, fy, cx, cy of the depth image, pixels, for types that bring none; then its width and height, to "
+                  "be checked",
+                  0, 6},
+        c.intrinsics);
+  visit(FieldInfo{"depth_unit_m", "depths of image_t are in this unit; float and disparity depths are rounded to it",
+                  1e-6, 0.1},
+        c.depth_unit_m);
+  visit(FieldInfo{"disparity", "baseline b in metres and offset o of a Kinect's raw disparity d: z = 8 fx b / (o - d)",
+                  0, 2},
+        c.disparity);
+  visit(FieldInfo{"pose_channel",
+                  "of the body's poses: bot_core.pose_t, rigid_transform_t or pronto.rigid_body_pose_cov_t", 1,
                   kMaxChannelChars},
         c.pose_channel);
   visit(FieldInfo{"translation_m", "where the sensor is in the body frame, x y z", 3, 3}, c.translation_m);
@@ -147,6 +187,9 @@ struct PublishConfig {
   std::string status_channel = "PLANEMAP_STATUS";
   std::string delta_channel = "PLANEMAP_DELTA";
   std::string request_channel = "PLANEMAP_REQUEST";
+  std::string point_cloud_channel;    ///< empty: no clouds of planes go out
+  double point_cloud_period_s = 1.0;  ///< least time between two of them
+  int point_cloud_points = 4000;      ///< of one at most
   double status_period_s = 1.0;
   double delta_period_s = 0.2;  ///< least time between two deltas
   int page_bytes = 60000;
@@ -159,6 +202,14 @@ void visit_fields(Config& c, Visit&& visit) {
   visit(FieldInfo{"status_channel", "planemap_lcm.status_t goes out here", 1, kMaxChannelChars}, c.status_channel);
   visit(FieldInfo{"delta_channel", "planemap_lcm.planes_t goes out here", 1, kMaxChannelChars}, c.delta_channel);
   visit(FieldInfo{"request_channel", "planemap_lcm.request_t comes in here", 1, kMaxChannelChars}, c.request_channel);
+  visit(
+      FieldInfo{"point_cloud_channel",
+                "planes as drake.lcmt_point_cloud for Drake's viewer, usually DRAKE_POINT_CLOUD_PLANEMAP; empty: none",
+                0, kMaxChannelChars},
+      c.point_cloud_channel);
+  visit(FieldInfo{"point_cloud_period_s", "least time between two such clouds", 0.1, 60.0}, c.point_cloud_period_s);
+  visit(FieldInfo{"point_cloud_points", "points of such a cloud at most, 16 bytes each in one message", 100, 1000000},
+        c.point_cloud_points);
   visit(FieldInfo{"status_period_s", "time between two status messages", 0.05, 60.0}, c.status_period_s);
   visit(FieldInfo{"delta_period_s", "least time between two deltas", 0.01, 60.0}, c.delta_period_s);
   visit(FieldInfo{"page_bytes", "greatest message that is sent", 4096, 60000}, c.page_bytes);

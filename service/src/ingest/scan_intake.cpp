@@ -13,6 +13,22 @@ namespace {
 constexpr double kWarnPeriodS = 5.0;
 constexpr std::size_t kMaxUnknownTypes = 64;
 
+ScanFormat format_of(const InputConfig& input) {
+  ScanFormat format;
+  format.family = input.family;
+  format.frame = input.frame;
+  format.depth_unit_m = input.depth_unit_m;
+  if (const auto& k = input.intrinsics; k.size() >= 4) {
+    format.intrinsics = PinholeIntrinsics{0, 0, k[0], k[1], k[2], k[3]};
+    if (k.size() == 6) {
+      format.intrinsics->width = static_cast<int>(k[4]);
+      format.intrinsics->height = static_cast<int>(k[5]);
+    }
+  }
+  if (const auto& d = input.disparity; d.size() == 2) format.disparity = DisparityCalibration{d[0], d[1]};
+  return format;
+}
+
 }  // namespace
 
 ScanIntake::ScanIntake(const ServiceConfig& config, Counters& counters, Sink sink, Warn warn)
@@ -27,7 +43,7 @@ ScanIntake::ScanIntake(const ServiceConfig& config, Counters& counters, Sink sin
   for (std::size_t i = 0; i < config.inputs.size(); ++i) {
     const InputConfig& input = config.inputs[i];
     const RateLimiter limiter(input.max_rate_hz, config.pose.restart_s);
-    inputs_.push_back(Input{input, PointFilter(input), limiter, std::nullopt});
+    inputs_.push_back(Input{input, format_of(input), PointFilter(input), limiter, std::nullopt});
     scan_channels_.emplace(input.channel, i);
     pose_channels_.emplace(input.pose_channel, synchronizer_.stream_of(i));
     InputFacts facts;
@@ -74,7 +90,7 @@ void ScanIntake::on_scan(std::size_t index, std::span<const std::uint8_t> messag
 }
 
 void ScanIntake::take_scan(std::size_t index, std::span<const std::uint8_t> message, double host_s) {
-  auto decoded = decode_scan(message, max_scan_bytes_);
+  auto decoded = decode_scan(message, max_scan_bytes_, inputs_[index].format);
   if (!decoded) return reject_scan(index, decoded.error(), host_s);
   {
     const std::lock_guard lock(facts_mutex_);
@@ -216,7 +232,7 @@ void ScanIntake::hand_on(SyncResults results, double host_s) {
 }
 
 void ScanIntake::warn_rejection(const std::string& channel, const Rejection& rejection, double host_s) {
-  if (rejection.reason == "unknown_type") {
+  if (rejection.reason == "unknown_type" || rejection.reason == "wrong_channel") {
     // A wrong program on the channel sends the same type for hours: said once for each type.
     const std::string text =
         fmt::format("channel {}: {}; such messages are counted, not used", channel, rejection.message);

@@ -51,6 +51,7 @@ class ScanIntake {
  private:
   struct Input {
     InputConfig config;
+    ScanFormat format;
     PointFilter filter;
     RateLimiter limiter;
     std::optional<std::pair<std::int64_t, std::int32_t>> last_scan;  ///< utime and seq
