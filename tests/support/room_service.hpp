@@ -28,7 +28,9 @@ class RoomService {
 
   explicit RoomService(const service::ServiceConfig& config = default_config(), std::uint64_t epoch = 1234,
                        const std::string& url = "memq://")
-      : bus_(std::make_shared<lcm::LCM>(url)), service_(config, *bus_, epoch) {}
+      : config_(config), bus_(std::make_shared<lcm::LCM>(url)), service_(config, *bus_, epoch) {}
+
+  const service::ServiceConfig& config() const { return config_; }
 
   const std::shared_ptr<lcm::LCM>& bus() { return bus_; }
   service::Service& service() { return service_; }
@@ -76,6 +78,7 @@ class RoomService {
     }
   }
 
+  const service::ServiceConfig config_;
   std::shared_ptr<lcm::LCM> bus_;
   service::Service service_;
   std::int64_t looks_ = 0;

@@ -177,7 +177,7 @@ TEST_F(Asking, AProgramInCNeedsNothingButTheTypes) {
   const Finished wrong =
       run({"env", std::string("LCM_DEFAULT_URL=") + kLcmUrl, program("planemap-c-example"), "nan", "0", "0"});
   EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_EQ(wrong.err, "planemapd refused: points[0]: point_m: not every coordinate is a finite number\n");
+  EXPECT_EQ(wrong.err, "planemapd refused: points[0].point_m: not every coordinate is a finite number\n");
 }
 
 TEST_F(Asking, NoDaemonIsThree) {

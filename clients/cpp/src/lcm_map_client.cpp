@@ -37,49 +37,16 @@ Expected<std::unique_ptr<LcmMapClient>> LcmMapClient::connect(const std::string&
 }
 
 LcmMapClient::LcmMapClient(std::shared_ptr<lcm::LCM> bus, const LcmClientOptions& options)
-    : requester_(std::make_unique<LcmRequester>(std::move(bus), options)),
-      queries_(std::make_unique<WireQueries>([this](const planemap_lcm::request_t& request, Timeout timeout) {
-        return requester_->ask(request, timeout);
-      })) {}
+    : LcmMapClient(std::make_unique<LcmRequester>(std::move(bus), options)) {}
+
+LcmMapClient::LcmMapClient(std::unique_ptr<LcmRequester> requester)
+    : WireMapClient(
+          std::make_unique<WireQueries>([r = requester.get()](const planemap_lcm::request_t& request, Timeout timeout) {
+            return r->ask(request, timeout);
+          })),
+      requester_(std::move(requester)) {}
 
 LcmMapClient::~LcmMapClient() = default;
-
-Expected<Status> LcmMapClient::status(Timeout timeout) {
-  return queries_->status(timeout);
-}
-
-Expected<Map> LcmMapClient::snapshot(Timeout timeout) {
-  return queries_->snapshot(timeout);
-}
-
-Expected<Map> LcmMapClient::cells(Timeout timeout) {
-  return queries_->cells(timeout);
-}
-
-Expected<Map> LcmMapClient::whole_map(Timeout timeout) {
-  return queries_->whole_map(timeout);
-}
-
-Expected<NearestAnswer> LcmMapClient::nearest(std::span<const QueryPoint> points, const NearestOptions& options,
-                                              Timeout timeout) {
-  return queries_->nearest(points, options, timeout);
-}
-
-Expected<CastAnswer> LcmMapClient::cast(std::span<const Ray> rays, const CastOptions& options, Timeout timeout) {
-  return queries_->cast(rays, options, timeout);
-}
-
-Expected<RegionAnswer> LcmMapClient::region(const RegionQuery& query, Timeout timeout) {
-  return queries_->region(query, timeout);
-}
-
-Expected<PlaneAnswer> LcmMapClient::plane(std::int64_t id, Timeout timeout) {
-  return queries_->plane(id, timeout);
-}
-
-Expected<FloorplanAnswer> LcmMapClient::floorplan(const FloorplanQuery& query, Timeout timeout) {
-  return queries_->floorplan(query, timeout);
-}
 
 std::unique_ptr<MapWatch> LcmMapClient::watch() {
   return std::make_unique<LcmMapWatch>(*requester_);

@@ -36,7 +36,7 @@ Expected<Eigen::Isometry3d> isometry_of(const v1::Pose& message, const std::stri
   const Eigen::Quaterniond rotation(message.rotation_w(), message.rotation_x(), message.rotation_y(),
                                     message.rotation_z());
   if (!rotation.coeffs().allFinite() || std::abs(rotation.norm() - 1.0) > kUnitTolerance) {
-    return fail(name + ".rotation: must be a unit quaternion; its length is " + std::to_string(rotation.norm()));
+    return fail(name + ".rotation: must be a unit quaternion, its length is " + std::to_string(rotation.norm()));
   }
   Eigen::Isometry3d pose(rotation.normalized());
   pose.translation() = vector_of(message.position_m());

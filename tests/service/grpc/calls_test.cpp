@@ -243,7 +243,7 @@ TEST_F(Calls, BadRegionsAreNamed) {
   request.mutable_oriented_box();
   expect_error(status_of(request), bad, "oriented_box.pose: is missing");
   request.mutable_frustum()->mutable_pose()->set_rotation_w(0.5);
-  expect_error(status_of(request), bad, "frustum.pose.rotation: must be a unit quaternion; its length is 0.5");
+  expect_error(status_of(request), bad, "frustum.pose.rotation: must be a unit quaternion, its length is 0.5");
   request.mutable_cylinder()->set_radius_m(1.0);
   expect_error(status_of(request), bad, "cylinder.to_m: must not be the same point as from_m");
 }

@@ -110,9 +110,12 @@ Expected<Replies> InProcessMapClient::Source::answer(const request_t& arguments)
 }
 
 InProcessMapClient::InProcessMapClient(MapSource source, const InProcessOptions& options)
-    : source_(std::make_unique<Source>(std::move(source))),
-      queries_(std::make_unique<WireQueries>(
-          [this](const request_t& request, Timeout /*timeout*/) { return source_->answer(request); })),
+    : InProcessMapClient(std::make_unique<Source>(std::move(source)), options) {}
+
+InProcessMapClient::InProcessMapClient(std::unique_ptr<Source> source, const InProcessOptions& options)
+    : WireMapClient(std::make_unique<WireQueries>(
+          [s = source.get()](const request_t& request, Timeout /*timeout*/) { return s->answer(request); })),
+      source_(std::move(source)),
       options_(options) {}
 
 InProcessMapClient::~InProcessMapClient() = default;
@@ -121,41 +124,8 @@ Expected<Status> InProcessMapClient::status(Timeout /*timeout*/) {
   return source_->status();
 }
 
-Expected<Map> InProcessMapClient::snapshot(Timeout timeout) {
-  return queries_->snapshot(timeout);
-}
-
-Expected<Map> InProcessMapClient::cells(Timeout timeout) {
-  return queries_->cells(timeout);
-}
-
-Expected<Map> InProcessMapClient::whole_map(Timeout timeout) {
-  return queries_->whole_map(timeout);
-}
-
-Expected<NearestAnswer> InProcessMapClient::nearest(std::span<const QueryPoint> points, const NearestOptions& options,
-                                                    Timeout timeout) {
-  return queries_->nearest(points, options, timeout);
-}
-
-Expected<CastAnswer> InProcessMapClient::cast(std::span<const Ray> rays, const CastOptions& options, Timeout timeout) {
-  return queries_->cast(rays, options, timeout);
-}
-
-Expected<RegionAnswer> InProcessMapClient::region(const RegionQuery& query, Timeout timeout) {
-  return queries_->region(query, timeout);
-}
-
-Expected<PlaneAnswer> InProcessMapClient::plane(std::int64_t id, Timeout timeout) {
-  return queries_->plane(id, timeout);
-}
-
-Expected<FloorplanAnswer> InProcessMapClient::floorplan(const FloorplanQuery& query, Timeout timeout) {
-  return queries_->floorplan(query, timeout);
-}
-
 std::unique_ptr<MapWatch> InProcessMapClient::watch() {
-  return std::make_unique<InProcessMapWatch>([this] { return source_->queries(); }, *queries_, options_.look_after);
+  return std::make_unique<InProcessMapWatch>([this] { return source_->queries(); }, queries(), options_.look_after);
 }
 
 }  // namespace planemap::client

@@ -5,9 +5,9 @@
 #include <span>
 #include <utility>
 
+#include "deadline.hpp"
 #include "lcm/query_requests.hpp"
 #include "lcm/reply_codec.hpp"
-#include "lcm/wire_queries.hpp"
 
 namespace planemap::client {
 namespace {

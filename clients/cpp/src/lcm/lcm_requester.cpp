@@ -5,8 +5,8 @@
 #include <random>
 #include <utility>
 
+#include "deadline.hpp"
 #include "lcm/reply_codec.hpp"
-#include "lcm/wire_queries.hpp"
 
 namespace planemap::client {
 namespace {

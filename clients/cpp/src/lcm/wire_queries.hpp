@@ -33,10 +33,11 @@ class WireQueries {
   Expected<FloorplanAnswer> floorplan(const FloorplanQuery& query, Timeout timeout) const;
 
  private:
+  template <class Add>
+  Expected<MapVersion> ask_part(planemap_lcm::request_t request, const MapVersion& version, Timeout timeout,
+                                const Add& add) const;
+
   Ask ask_;
 };
-
-/// "1.5 s"
-std::string seconds_text(std::chrono::milliseconds time);
 
 }  // namespace planemap::client

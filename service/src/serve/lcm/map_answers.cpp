@@ -61,7 +61,7 @@ std::optional<Refusal> add_nearest(const SnapshotQueries& queries, const planema
   if (!points) return refuse(points.error());
   for (std::size_t i = 0; i < points->size(); ++i) {
     const auto near = queries.nearest((*points)[i]);
-    if (!near) return Refusal{reply_t::STATUS_BAD_REQUEST, fmt::format("points[{}]: {}", i, near.error().message)};
+    if (!near) return Refusal{reply_t::STATUS_BAD_REQUEST, fmt::format("points[{}].{}", i, near.error().message)};
     add_to(answer, *near, i);
   }
   return std::nullopt;

@@ -2,8 +2,7 @@
 
 #include <chrono>
 #include <memory>
-#include <planemap/client/map_client.hpp>
-#include <span>
+#include <planemap/client/wire_map_client.hpp>
 #include <string>
 
 namespace lcm {
@@ -13,7 +12,6 @@ class LCM;
 namespace planemap::client {
 
 class LcmRequester;
-class WireQueries;
 
 /// Where the service is listening, and how patient to be with it.
 struct LcmClientOptions {
@@ -33,9 +31,9 @@ struct LcmClientOptions {
 std::string default_lcm_url();
 
 /// Asks a planemap service over LCM. An answer comes as pages, each a message; lost ones are asked for again by number
-/// until the answer is whole or the timeout over. Every call blocks up to its timeout. Not thread-safe: one thread uses
-/// it.
-class LcmMapClient final : public MapClient {
+/// until the answer is whole or the timeout over. Where the service does not keep the revision of a call's first part
+/// until it is asked for the next one, whole_map(), nearest() and cast() begin anew.
+class LcmMapClient final : public WireMapClient {
  public:
   /// Opens LCM; a receive buffer that holds a whole answer is added to udpm URLs that name none.
   /// Fails (kNoNetwork) if it can't be opened; the error says what to do.
@@ -45,18 +43,6 @@ class LcmMapClient final : public MapClient {
   explicit LcmMapClient(std::shared_ptr<lcm::LCM> bus, const LcmClientOptions& options = {});
   ~LcmMapClient() override;
 
-  Expected<Status> status(Timeout timeout) override;
-  Expected<Map> snapshot(Timeout timeout) override;
-  Expected<Map> cells(Timeout timeout) override;
-  /// Where the service does not keep the planes' revision until it is asked for the cells, both are asked for anew.
-  Expected<Map> whole_map(Timeout timeout) override;
-  /// More points than a request may bring go in several, all to the same revision; the same for rays.
-  Expected<NearestAnswer> nearest(std::span<const QueryPoint> points, const NearestOptions& options,
-                                  Timeout timeout) override;
-  Expected<CastAnswer> cast(std::span<const Ray> rays, const CastOptions& options, Timeout timeout) override;
-  Expected<RegionAnswer> region(const RegionQuery& query, Timeout timeout) override;
-  Expected<PlaneAnswer> plane(std::int64_t id, Timeout timeout) override;
-  Expected<FloorplanAnswer> floorplan(const FloorplanQuery& query, Timeout timeout) override;
   /// By the deltas, and by snapshots where those were lost.
   std::unique_ptr<MapWatch> watch() override;
 
@@ -64,8 +50,9 @@ class LcmMapClient final : public MapClient {
   std::size_t malformed_count() const;
 
  private:
+  explicit LcmMapClient(std::unique_ptr<LcmRequester> requester);
+
   std::unique_ptr<LcmRequester> requester_;
-  std::unique_ptr<WireQueries> queries_;
 };
 
 }  // namespace planemap::client

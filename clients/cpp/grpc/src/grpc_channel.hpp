@@ -1,0 +1,42 @@
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+#include <planemap/v1/admin_service.grpc.pb.h>
+#include <planemap/v1/planemap_service.grpc.pb.h>
+
+#include <chrono>
+#include <memory>
+#include <planemap/client/grpc_connection.hpp>
+#include <string>
+
+#include "server_address.hpp"
+
+namespace planemap::client {
+
+/// The stubs of a server, and what its errors mean.
+class GrpcChannel {
+ public:
+  GrpcChannel(ServerAddress address, GrpcClientOptions options);
+
+  v1::PlaneMap::Stub& plane_map() { return *plane_map_; }
+  v1::Admin::Stub& admin() { return *admin_; }
+  const GrpcClientOptions& options() const { return options_; }
+  /// HOST:PORT
+  std::string server() const { return address_.text(); }
+
+  /// Puts what each call brings into a context: token and deadline.
+  void prepare(grpc::ClientContext& context, std::chrono::milliseconds timeout) const;
+  /// The same for a call without end.
+  void prepare(grpc::ClientContext& context) const;
+
+  /// Why a call failed, in words that say what to do. @pre !status.ok()
+  Error error_of(const grpc::Status& status, std::chrono::milliseconds timeout) const;
+
+ private:
+  const ServerAddress address_;
+  const GrpcClientOptions options_;
+  std::unique_ptr<v1::PlaneMap::Stub> plane_map_;
+  std::unique_ptr<v1::Admin::Stub> admin_;
+};
+
+}  // namespace planemap::client
