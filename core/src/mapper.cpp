@@ -1,7 +1,9 @@
 #include "planemap/mapper.hpp"
 
 #include <array>
+#include <utility>
 
+#include "map_check.hpp"
 #include "planemap/assignment.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/local_planes.hpp"
@@ -50,6 +52,17 @@ class Mapper::Impl {
         planes_(config.grid, config.planes, config.pose_error),
         wear_(config.wear, config.sensor, config.grid.cell_size_m) {}
 
+  /// @pre the map was checked
+  void restore(const MapSnapshot& map) {
+    revision_ = map.revision();
+    utime_ = map.utime();
+    for (const auto& block : map.blocks()) grid_.add_block(*block);
+    planes_.restore(grid_, map.planes(), map.state());
+    records_.assign(map.planes().begin(), map.planes().end());
+    removed_.assign(map.removed().begin(), map.removed().end());
+    removed_complete_since_ = map.removed_complete_since();
+  }
+
   ScanReport integrate(const Scan& scan, const ScanPose& pose, StageObserver* observer) {
     ScanReport report;
     utime_ = std::max(utime_, pose.utime);
@@ -97,6 +110,7 @@ class Mapper::Impl {
     parts.removed_complete_since = removed_complete_since_;
     parts.planes = records_;
     parts.removed = removed_;
+    parts.state = planes_.state();
     grid_.share(parts.blocks);
     return snapshot;
   }
@@ -199,6 +213,15 @@ class Mapper::Impl {
 
 Mapper::Mapper(const MapperConfig& config, std::uint64_t epoch, SecondThread* second)
     : impl_(std::make_unique<Impl>(config, epoch, second)) {}
+Mapper::Mapper(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Expected<Mapper> Mapper::restore(const MapperConfig& config, const MapSnapshot& map, SecondThread* second) {
+  if (auto whole = check_map(config, map); !whole) return tl::make_unexpected(whole.error());
+  auto impl = std::make_unique<Impl>(config, map.epoch(), second);
+  impl->restore(map);
+  return Mapper(std::move(impl));
+}
+
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 Mapper& Mapper::operator=(Mapper&&) noexcept = default;

@@ -11,6 +11,14 @@ Expected<Plane> Plane::from_coefficients(const Eigen::Vector3d& normal, double d
   return Plane(normal / length, d / length);
 }
 
+Expected<Plane> Plane::from_unit_normal(const Eigen::Vector3d& unit_normal, double d) {
+  constexpr double kTolerance = 1e-9;
+  if (!(std::abs(unit_normal.norm() - 1.0) < kTolerance) || !std::isfinite(d)) {
+    return fail("plane: the normal must be a unit vector, and d finite");
+  }
+  return Plane(unit_normal, d);
+}
+
 Plane Plane::through(const Eigen::Vector3d& point_m, const Eigen::Vector3d& unit_normal) {
   return {unit_normal, -unit_normal.dot(point_m)};
 }

@@ -8,7 +8,7 @@
 
 namespace planemap {
 
-void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) const {
+void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) {
   const State& plane = state(slot);
   record.id = id_of(slot);
   record.plane = plane.fit.plane;
@@ -26,6 +26,45 @@ void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord&
   record.quality = plane.statistics.core_point_count() / std::max(plane.statistics.point_count(), 1.0);
   record.revision = revision;
   record.merged = plane.merged;
+  record.state.reset();  // one that waits in the pool is taken again
+  const std::shared_ptr<PlaneState> kept = state_pool_.take();
+  *kept = {plane.statistics,         plane.fit, plane.pose_evidence, plane.worn_cells, plane.cells_when_bridged,
+           plane.scans_since_bridged};
+  record.state = kept;
+}
+
+MapperState PlaneMap::state() const {
+  return {states_.size(), last_pose_, poses_err_, pose_variance_m2_, scans_};
+}
+
+void PlaneMap::restore(const UncertainGrid& grid, std::span<const std::shared_ptr<const PlaneRecord>> records,
+                       const MapperState& state) {
+  states_.resize(state.next_plane_id);
+  for (const auto& record : records) {
+    const PlaneState& kept = *record->state;
+    auto plane = std::make_unique<State>(kept.statistics.origin_m());
+    plane->statistics = kept.statistics;
+    plane->fit = kept.fit;
+    plane->pose_evidence = kept.pose_evidence;
+    plane->merged = record->merged;
+    plane->first_seen_utime = record->first_seen_utime;
+    plane->last_seen_utime = record->last_seen_utime;
+    plane->worn_cells = kept.worn_cells;
+    plane->cells_when_bridged = kept.cells_when_bridged;
+    plane->scans_since_bridged = kept.scans_since_bridged;
+    plane->cells.reserve(record->cell_count);
+    states_[record->id] = std::move(plane);
+  }
+  grid.for_each_cell([&](CellRef ref) {
+    const PlaneSlot slot = grid.cell(ref).plane;
+    if (slot == kNoSlot) return;
+    this->state(slot).cells.push_back(ref);
+    coarse_.add(grid.geometric_centre_m(ref), slot);
+  });
+  last_pose_ = state.last_pose;
+  poses_err_ = poses_err_ || state.poses_err;
+  pose_variance_m2_ = state.pose_variance_m2;
+  scans_ = state.scans;
 }
 
 bool PlaneMap::update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,

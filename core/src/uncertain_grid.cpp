@@ -96,6 +96,13 @@ std::uint32_t UncertainGrid::make_block(const BlockIndex& index) {
   return slot;
 }
 
+void UncertainGrid::add_block(const Block& block) {
+  const std::uint32_t slot = make_block(block.index());
+  make_own(slot, block.size());
+  *blocks_[slot] = block;
+  cell_count_ += block.size();
+}
+
 Block& UncertainGrid::growing_block(std::uint32_t slot) {
   const std::size_t size = blocks_[slot]->size();
   if (written_since_[slot] != shares_ || size == blocks_[slot]->capacity()) make_own(slot, size + 1);

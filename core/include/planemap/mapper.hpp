@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <planemap/config.hpp>
+#include <planemap/expected.hpp>
 #include <planemap/pose_covariance.hpp>
 #include <planemap/scan.hpp>
 #include <planemap/second_thread.hpp>
@@ -49,6 +50,12 @@ class Mapper {
   /// The
   ///                map is the same
   Mapper(const MapperConfig& config, std::uint64_t epoch, SecondThread* second = nullptr);
+  /// Goes on with a map that a mapper made, from any of its snapshots: planes keep ids, records and evidence to the
+  /// bit, the next plane gets state().next_plane_id. Not kept are for how long cells have been seen through, and the
+  /// order in which the cells of large planes joined them. The error says what is wrong with the map: it is checked as
+  /// one from outside (blocks twice, numbers that are not finite, labels without a plane, planes that count other cells
+  /// than carry their label), and its cells must be of the configured size.
+  static Expected<Mapper> restore(const MapperConfig& config, const MapSnapshot& map, SecondThread* second = nullptr);
   ~Mapper();
   Mapper(Mapper&&) noexcept;
   Mapper& operator=(Mapper&&) noexcept;
@@ -65,6 +72,7 @@ class Mapper {
 
  private:
   class Impl;
+  explicit Mapper(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <planemap/expected.hpp>
 #include <string_view>
@@ -18,6 +19,9 @@ class Plane {
  public:
   /// Scales normal and d together; fails if the normal is zero or a number is not finite.
   static Expected<Plane> from_coefficients(const Eigen::Vector3d& normal, double d);
+  /// The same numbers, to the bit, as a plane had that was written down; fails unless |unit_normal| = 1 to 1e-9 and all
+  /// are finite.
+  static Expected<Plane> from_unit_normal(const Eigen::Vector3d& unit_normal, double d);
   /// The plane through a point. @pre |unit_normal| = 1
   static Plane through(const Eigen::Vector3d& point_m, const Eigen::Vector3d& unit_normal);
 
@@ -52,6 +56,8 @@ constexpr std::string_view name_of(PlaneClass c) {
   return "other";
 }
 
+struct PlaneState;
+
 /// A plane of the map as readers see it; never changed once it was published.
 struct PlaneRecord {
   PlaneId id = kNoPlane;
@@ -65,6 +71,8 @@ struct PlaneRecord {
   double quality = 0.0;               ///< 0 to 1: share of its points in cells that agree with it and shape it
   std::uint64_t revision = 0;         ///< of the map, when this record was made
   std::vector<PlaneId> merged;        ///< ids of the planes that were merged into it, ascending
+  /// What the mapper needs to go on with the plane; nullptr in records that no mapper made.
+  std::shared_ptr<const PlaneState> state;
 };
 
 /// A plane that is no more.

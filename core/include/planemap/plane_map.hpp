@@ -7,6 +7,7 @@
 #include <planemap/local_planes.hpp>
 #include <planemap/neighbourhoods.hpp>
 #include <planemap/plane.hpp>
+#include <planemap/plane_state.hpp>
 #include <planemap/plane_statistics.hpp>
 #include <planemap/pool.hpp>
 #include <planemap/pose_evidence.hpp>
@@ -68,6 +69,11 @@ class PlaneMap {
   /// less than what starts one is gone.
   void wear_away(UncertainGrid& grid, std::span<const CellRef> cells);
 
+  /// What it knows beside its planes.
+  MapperState state() const;
+  /// Goes on with the planes of another one. @pre it has none yet; cells and records were checked (check_map)
+  void restore(const UncertainGrid& grid, std::span<const std::shared_ptr<const PlaneRecord>> records,
+               const MapperState& state);
   /// Records of the planes that changed since the last call, made anew; `records` holds all, by id.
   /// @return whether anything changed
   bool update_records(std::uint64_t revision, std::vector<std::shared_ptr<const PlaneRecord>>& records,
@@ -146,7 +152,7 @@ class PlaneMap {
   void dissolve(UncertainGrid& grid, PlaneSlot slot);
   bool is_worn_out(PlaneSlot slot) const;
   void take_pose(const ScanPose& scan);
-  void write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record) const;
+  void write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord& record);
 
   GridConfig grid_config_;
   PlaneConfig config_;
@@ -165,6 +171,7 @@ class PlaneMap {
   std::vector<RemovedPlane> removed_;           ///< since the last update_records()
   CoarseIndex coarse_;
   Pool<PlaneRecord> record_pool_;
+  Pool<PlaneState> state_pool_;
 
   // What steps of a scan need for themselves; kept to spare allocations.
   std::vector<PlaneSlot> touching_;      ///< each slot once

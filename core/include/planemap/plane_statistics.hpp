@@ -70,6 +70,26 @@ class PlaneStatistics {
     return pooled_.mean_square_distance(plane.normal(), plane.signed_distance_m(origin_m_));
   }
 
+  /// Calls visit(number) for each number it is made of: to write it down, and to take it in again to the bit.
+  template <MaybeConst<PlaneStatistics> Self, class Visit>
+  static void visit_numbers(Self& self, Visit&& visit) {
+    const auto moments = [&](auto& m) {
+      visit(m.weight);
+      for (auto& x : m.first) visit(x);
+      for (auto& x : m.second.e) visit(x);
+    };
+    for (auto& x : self.origin_m_) visit(x);
+    moments(self.pooled_);
+    for (auto& x : self.means_.e) visit(x);
+    moments(self.centres_);
+    for (auto& x : self.normal_sum_) visit(x);
+    visit(self.deviation_sum_rad2_);
+    visit(self.normals_);
+    for (auto& x : self.view_) visit(x);
+    for (auto* x : {&self.cells_, &self.points_, &self.core_points_, &self.evidence_count_, &self.core_cells_})
+      visit(*x);
+  }
+
  private:
   void accumulate(const Cell& cell, const Eigen::Vector3d& centre_m, double sign, double share);
   std::optional<PlaneFit> fit_pooled() const;

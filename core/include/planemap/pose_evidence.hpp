@@ -53,6 +53,15 @@ class PoseEvidence {
   Eigen::Matrix3d covariance(const PlaneFit& fit, const Eigen::Vector3d& origin_m,
                              const PoseCovariance& of_one_scan) const;
 
+  /// Calls visit(number) for each number it is made of: to write it down, and to take it in again to the bit.
+  template <MaybeConst<PoseEvidence> Self, class Visit>
+  static void visit_numbers(Self& self, Visit&& visit) {
+    for (Eigen::Index i = 0; i < 16; ++i) visit(self.normal_equations_.data()[i]);
+    for (Eigen::Index i = 0; i < 16; ++i) visit(self.spread_.data()[i]);
+    for (Eigen::Index i = 0; i < 24; ++i) visit(self.carried_.data()[i]);
+    visit(self.utime_);
+  }
+
  private:
   using Matrix46 = Eigen::Matrix<double, 4, 6>;
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <planemap/block_table.hpp>
 #include <planemap/plane.hpp>
+#include <planemap/plane_state.hpp>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,7 @@ class MapSnapshot {
     std::vector<std::shared_ptr<const PlaneRecord>> planes;
     std::vector<RemovedPlane> removed;
     BlockTable blocks;
+    MapperState state;
   };
   MapSnapshot() = default;
   explicit MapSnapshot(Parts parts) : parts_(std::move(parts)) {}
@@ -82,6 +84,10 @@ class MapSnapshot {
   std::optional<MapDelta> delta_since(std::uint64_t revision) const;
   /// The blocks of cells, in the order in which they were made.
   const BlockTable& blocks() const { return parts_.blocks; }
+  /// What the mapper knew beside blocks and planes.
+  const MapperState& state() const { return parts_.state; }
+  /// Since which revision removed() names every plane that is no more.
+  std::uint64_t removed_complete_since() const { return parts_.removed_complete_since; }
   bool is_dense(const Cell& cell) const;
   /// A cell of one of the blocks as readers see it. @pre the cell has points
   CellView view_of(const Block& block, std::size_t ordinal) const;
