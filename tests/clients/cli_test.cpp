@@ -63,8 +63,8 @@ void write_wall_log(const std::string& path, int scans) {
 }
 
 TEST_F(CliTest, HelpAndVersionAreThereForEveryCommand) {
-  for (const char* command :
-       {"", "build", "status", "snapshot", "export", "nearest", "ray", "region", "plane", "floorplan", "watch"}) {
+  for (const char* command : {"", "build", "status", "snapshot", "export", "nearest", "ray", "region", "plane",
+                              "floorplan", "watch", "pause", "resume", "reset", "save"}) {
     const Finished outcome = planemap(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_NE(outcome.out.find("--help"), std::string::npos) << command;
@@ -97,6 +97,12 @@ TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"export - '" + path("map.xyz") + "'", ".csv"},
       {"export map.planemap '" + path("map.csv") + "'", "map.planemap"},
       {"status --timeout 0", "timeout"},
+      {"status --server 127.0.0.1:1 --lcm-url memq://", "excludes"},
+      {"status --server robot:port", "is no address of a server: it must be HOST, HOST:PORT or [IPv6]:PORT"},
+      {"status --token-file " + path("missing"), "--token-file: " + path("missing") + ": cannot be read: No such file"},
+      {"status --ca-file " + path("log"), "ca: holds no certificate in PEM"},
+      {"status --key-file " + path("log"), "--certificate-file"},
+      {"pause --lcm-url memq://", "--lcm-url"},
   };
   for (const Case& wrong : cases) {
     const Finished outcome = planemap(wrong.arguments);
@@ -138,6 +144,27 @@ TEST_F(CliTest, NoDaemonIsThreeWithASentence) {
     EXPECT_NE(outcome.err.find("planemapd"), std::string::npos) << outcome.err;
     EXPECT_TRUE(outcome.out.empty()) << outcome.out;
   }
+}
+
+TEST_F(CliTest, NoServerIsThreeWithASentence) {
+  for (const std::string command : {"status", "snapshot --json", "export - map.json", "watch", "pause", "reset"}) {
+    // Port 1 is nobody's here.
+    const Finished outcome = planemap(command + " --server 127.0.0.1:1 --timeout 0.3");
+    EXPECT_EQ(outcome.exit_code, 3) << command;
+    EXPECT_NE(outcome.err.find("no planemapd can be reached at 127.0.0.1:1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("is planemapd running, with grpc.listen there (--server)?"), std::string::npos)
+        << outcome.err;
+    EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+  }
+}
+
+TEST_F(CliTest, ATokenFileHoldsOneToken) {
+  std::ofstream(path("tokens")) << "read 0123456789abcdef\n";
+  const Finished outcome = planemap("status --token-file '" + path("tokens") + "'");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("--token-file: " + path("tokens") + ": must hold one token and nothing else"),
+            std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {

@@ -266,15 +266,15 @@ TEST_F(GrpcTokens, AreSentWithEveryCall) {
 
 TEST_F(GrpcTokens, OnesThatAreMissingOrUnknownAreSaidToBe) {
   const auto none = client_of(door_->address());
-  expect_error(none->status(kLong), Kind::kRefused,
+  expect_error(none->status(kLong), Kind::kDenied,
                "the service refused the request: this call needs a token of scope read");
-  expect_error(none->watch()->next(kLong), Kind::kRefused, "this call needs a token of scope read");
-  expect_error(client_of(door_->address(), with_token("unknown-0123456789"))->status(kLong), Kind::kRefused,
+  expect_error(none->watch()->next(kLong), Kind::kDenied, "this call needs a token of scope read");
+  expect_error(client_of(door_->address(), with_token("unknown-0123456789"))->status(kLong), Kind::kDenied,
                "the token is not known");
 }
 
 TEST_F(GrpcTokens, OfScopeAdminChangeWhatTheServiceDoes) {
-  expect_error(admin(kReader).pause(kLong), Kind::kRefused, "the token is of scope read, this call needs admin");
+  expect_error(admin(kReader).pause(kLong), Kind::kDenied, "the token is of scope read, this call needs admin");
   auto by_admin = admin(kAdmin);
   EXPECT_TRUE(by_admin.pause(kLong));
   EXPECT_TRUE(room_.service().mapping().is_paused());

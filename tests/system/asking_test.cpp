@@ -1,6 +1,7 @@
 // The map asked by the command line, as a user does: the real daemon on real multicast.
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -117,6 +118,53 @@ TEST_F(Asking, EveryQuestionIsAnsweredInWordsAndInJson) {
   EXPECT_FALSE(plan["floor"].empty());
   EXPECT_GT(plan["freeArea"].get<double>(), 0.1);
   EXPECT_NE(planemap({"floorplan", "--cut-low", "0.5"}).out.find("free floor"), std::string::npos);
+}
+
+TEST_F(Asking, TheServerAnswersAsTheBusDoes) {
+  ASSERT_NO_FATAL_FAILURE(build_map());
+  const std::vector<std::vector<std::string>> questions = {
+      {"snapshot", "--json"},
+      {"snapshot"},
+      {"nearest", "--point", "0", "0", "1", "--sigma", "0.01", "--json"},
+      {"ray", "--from", "0", "0", "1", "--direction", "0", "0", "-1"},
+      {"region", "--sphere", "0", "0", "0", "3", "--polygons"},
+      {"plane", "1"},
+      {"plane", "999999", "--json"},
+      {"floorplan"}};
+  for (const auto& question : questions) {
+    std::vector<std::string> command = question;
+    command.insert(command.begin(), program("planemap"));  // at the default server
+    const Finished by_server = run(command);
+    EXPECT_EQ(by_server.exit_code, 0) << question[0] << ": " << by_server.err;
+    EXPECT_FALSE(by_server.out.empty()) << question[0];
+    EXPECT_EQ(by_server.out, planemap(question).out) << question[0];
+  }
+  const Finished status = run({program("planemap"), "status", "--json"});
+  ASSERT_EQ(status.exit_code, 0) << status.err;
+  EXPECT_GT(nlohmann::json::parse(status.out)["planeCount"], 5);
+  const std::string exported = (scratch_ / "map.json").string();
+  EXPECT_EQ(run({program("planemap"), "export", "-", exported}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(exported));
+  const Finished watch = run({program("planemap"), "watch", "--changes", "1", "--json"});
+  EXPECT_EQ(watch.exit_code, 0) << watch.err;
+  EXPECT_TRUE(nlohmann::json::parse(watch.out)["newMap"]);
+}
+
+TEST_F(Asking, ADaemonIsPausedResumedAndReset) {
+  ASSERT_NO_FATAL_FAILURE(build_map());
+  const auto admin = [&](const std::string& what) { return run({program("planemap"), what, "--json"}); };
+  const auto status = [&] { return nlohmann::json::parse(run({program("planemap"), "status", "--json"}).out); };
+  EXPECT_EQ(admin("pause").out, "{\"paused\":true}\n");
+  EXPECT_NE(status()["idleReason"].dump().find("paused"), std::string::npos) << status()["idleReason"];
+  EXPECT_EQ(admin("resume").out, "{\"paused\":false}\n");
+  const auto before = status();
+  const auto reset = nlohmann::json::parse(admin("reset").out);
+  EXPECT_GT(reset["epoch"], before["epoch"]);
+  EXPECT_EQ(status()["epoch"], reset["epoch"]);
+  EXPECT_EQ(status()["planeCount"], 0);
+  const Finished save = admin("save");
+  EXPECT_EQ(save.exit_code, 1);
+  EXPECT_NE(save.err.find("the service cannot do that: "), std::string::npos) << save.err;
 }
 
 TEST_F(Asking, WhatIsWrongIsSaidInWords) {

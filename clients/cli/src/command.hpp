@@ -25,6 +25,8 @@ void add_region_command(CLI::App& app, Action& action);
 void add_plane_command(CLI::App& app, Action& action);
 void add_floorplan_command(CLI::App& app, Action& action);
 void add_watch_command(CLI::App& app, Action& action);
+/// pause, resume, reset and save.
+void add_admin_commands(CLI::App& app, Action& action);
 
 /// Says on stderr what went wrong: "planemap: ...".
 ExitCode complain(ExitCode code, const std::string& message);

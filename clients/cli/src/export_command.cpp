@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <planemap/client/lcm_map_client.hpp>
 #include <vector>
 
 #include "command.hpp"
@@ -25,8 +24,8 @@ ExitCode run(const ExportOptions& options) {
   for (const std::string& output : options.outputs) {
     if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
   }
-  auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
-  if (!client) return complain(client.error(), options.daemon);
+  const auto client = connect(options.daemon);
+  if (!client) return client.error();
   const auto answer = (*client)->whole_map(2 * options.daemon.timeout());  // the planes, then the cells
   if (!answer) return complain(answer.error(), options.daemon);
   const auto map = export_map_of(*answer);

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
-#include <planemap/client/lcm_map_client.hpp>
 
 #include "command.hpp"
 #include "daemon_options.hpp"
@@ -19,8 +18,8 @@ struct SnapshotOptions {
 };
 
 ExitCode run(const SnapshotOptions& options) {
-  auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
-  if (!client) return complain(client.error(), options.daemon);
+  const auto client = connect(options.daemon);
+  if (!client) return client.error();
   const auto answer = (*client)->snapshot(options.daemon.timeout());
   if (!answer) return complain(answer.error(), options.daemon);
   const auto map = export_map_of(*answer);

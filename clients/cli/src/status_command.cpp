@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <planemap/client/lcm_map_client.hpp>
 
 #include "command.hpp"
 #include "daemon_options.hpp"
@@ -64,8 +63,8 @@ std::string plain_text(const client::Status& status) {
 }
 
 ExitCode run(const StatusOptions& options) {
-  auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
-  if (!client) return complain(client.error(), options.daemon);
+  const auto client = connect(options.daemon);
+  if (!client) return client.error();
   const auto status = (*client)->status(options.daemon.timeout());
   if (!status) return complain(status.error(), options.daemon);
   std::fputs((options.json ? json_text(*status) : plain_text(*status)).c_str(), stdout);

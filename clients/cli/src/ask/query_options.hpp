@@ -2,7 +2,7 @@
 
 #include <array>
 #include <functional>
-#include <planemap/client/lcm_map_client.hpp>
+#include <planemap/client/map_client.hpp>
 #include <planemap/client/query_types.hpp>
 #include <string>
 #include <vector>
@@ -42,9 +42,9 @@ void print(const std::string& text);
 /// Connects, asks, and prints what `text_of` makes of the answer; or says what went wrong.
 template <class Ask, class TextOf>
 ExitCode ask_and_print(const QueryOptions& options, const Ask& ask, const TextOf& text_of) {
-  auto client = client::LcmMapClient::connect(options.daemon.lcm_url);
-  if (!client) return complain(client.error(), options.daemon);
-  const auto answer = ask(static_cast<client::MapClient&>(**client), options.daemon.timeout());
+  const auto client = connect(options.daemon);
+  if (!client) return client.error();
+  const auto answer = ask(**client, options.daemon.timeout());
   if (!answer) return complain(answer.error(), options.daemon);
   print(text_of(*answer));
   return ExitCode::kDone;

@@ -18,6 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
+constexpr milliseconds kSilentAfter(5000);
 constexpr milliseconds kLook(200);  // also how soon a signal is noticed
 
 volatile std::sig_atomic_t g_is_stopped = 0;
@@ -69,10 +70,8 @@ bool tell(const client::MapChange& change, const client::Map& map, bool json) {
 }
 
 ExitCode run(const WatchCommand& command) {
-  client::LcmClientOptions options;
-  options.silent_after = std::max(command.query.daemon.timeout(), options.silent_after);
-  auto client = client::LcmMapClient::connect(command.query.daemon.lcm_url, options);
-  if (!client) return complain(client.error(), command.query.daemon);
+  const auto client = connect(command.query.daemon, std::max(command.query.daemon.timeout(), kSilentAfter));
+  if (!client) return client.error();
   std::signal(SIGINT, [](int) { g_is_stopped = 1; });
   std::signal(SIGTERM, [](int) { g_is_stopped = 1; });
   const auto watch = (*client)->watch();

@@ -97,7 +97,7 @@ Error GrpcChannel::error_of(const grpc::Status& status, std::chrono::millisecond
       return {Kind::kUnreachable, "no answer came from " + server() + " within " + seconds_text(timeout)};
     case StatusCode::UNAUTHENTICATED:
     case StatusCode::PERMISSION_DENIED:
-      return {Kind::kRefused, "the service refused the request: " + said};
+      return {Kind::kDenied, "the service refused the request: " + said};
     case StatusCode::UNIMPLEMENTED:
       return {Kind::kRefused, "the service cannot do that: " + said};
     case StatusCode::INVALID_ARGUMENT:

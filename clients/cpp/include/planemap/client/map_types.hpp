@@ -81,10 +81,11 @@ struct Status {
 /// Why a request got no answer that can be used.
 struct Error {
   enum class Kind {
-    kNoNetwork,    ///< LCM can't be opened, or can't send
+    kNoNetwork,    ///< LCM can't be opened, or can't send; an address or option of gRPC that can't be used
     kUnreachable,  ///< nobody answered
     kIncomplete,   ///< the service answered, but pages were still missing when time was up
     kRefused,      ///< the service answered with an error
+    kDenied,       ///< who asks may not: a token is missing, unknown, or of too small a scope
     kMalformed,    ///< the answer contradicts itself
     kGone,         ///< the service does not keep the revision any more; the client's calls start over then
   };

@@ -1,0 +1,80 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <planemap/client/grpc_map_admin.hpp>
+#include <string>
+#include <utility>
+
+#include "command.hpp"
+#include "daemon_options.hpp"
+
+namespace planemap::cli {
+namespace {
+
+using client::GrpcMapAdmin;
+
+struct AdminOptions {
+  ServerOptions server;
+  bool json = false;
+};
+
+/// What was done, for people and for programs.
+struct Done {
+  std::string text;
+  nlohmann::ordered_json json;
+};
+
+using Do = std::function<client::Expected<Done>(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout)>;
+
+client::Expected<Done> pause(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout) {
+  return admin.pause(timeout).map([] {
+    return Done{"paused: scans are dropped; the map stays and can be asked", {{"paused", true}}};
+  });
+}
+
+client::Expected<Done> resume(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout) {
+  return admin.resume(timeout).map([] { return Done{"scans are mapped", {{"paused", false}}}; });
+}
+
+client::Expected<Done> reset(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout) {
+  return admin.reset(timeout).map([](std::int64_t epoch) {
+    return Done{"a new, empty map has begun, epoch " + std::to_string(epoch), {{"epoch", epoch}}};
+  });
+}
+
+client::Expected<Done> save(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout) {
+  return admin.save(timeout).map([] { return Done{"the map is saved", {{"saved", true}}}; });
+}
+
+ExitCode run(const AdminOptions& options, const Do& action) {
+  const auto connection = connect_to_server(options.server);
+  if (!connection) return connection.error();
+  GrpcMapAdmin admin(*connection);
+  const auto done = action(admin, options.server.timeout());
+  if (!done) return complain(done.error(), options.server);
+  std::printf("%s\n", options.json ? done->json.dump().c_str() : done->text.c_str());
+  return ExitCode::kDone;
+}
+
+void add(CLI::App& app, Action& action, const char* name, const char* help, Do command_action) {
+  CLI::App* command = app.add_subcommand(name, help);
+  const auto options = std::make_shared<AdminOptions>();
+  command->add_flag("--json", options->json, "Print one JSON object");
+  add_server_options(*command, options->server);
+  command->callback([options, &action, does = std::move(command_action)] {
+    action = [options, does] { return run(*options, does); };
+  });
+}
+
+}  // namespace
+
+void add_admin_commands(CLI::App& app, Action& action) {
+  add(app, action, "pause", "Let the daemon drop scans until 'resume'; the map stays and can be asked", pause);
+  add(app, action, "resume", "Let the daemon map scans again", resume);
+  add(app, action, "reset", "Let the daemon forget its map and begin a new one", reset);
+  add(app, action, "save", "Let the daemon write its map to its store", save);
+}
+
+}  // namespace planemap::cli
