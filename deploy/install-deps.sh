@@ -70,8 +70,14 @@ readonly TEST_PACKAGES=(
   liblcm-bin          # lcm-logplayer, lcm-logger
   liboctomap-dev      # a peer, for planemap-bench
   nftables            # loses datagrams on purpose
+  mypy                # types of the Python package
   openssl             # certificates of the tests
   python3             # run-clang-tidy
+  python3-grpcio      # this and the next ones: the Python package, its example and tests
+  python3-matplotlib
+  python3-numpy
+  python3-protobuf
+  python3-pytest
   shellcheck
   util-linux
 )
