@@ -62,8 +62,9 @@ Recorded read_log(const std::string& path) {
 TEST_F(KinectBridge, HelpAndVersionAreThere) {
   const Finished help = bridge("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* option : {"--dataset", "--simulate", "--seed", "--truth", "--log", "--pose-rate", "Exit codes",
-                             "apartment", "door-ajar", "ceiling-glimpse"}) {
+  for (const char* option :
+       {"--dataset", "--simulate", "--seed", "--truth", "--log", "--pose-rate", "Exit codes", "--format",
+        "image_array_float", "drake.lcmt_point_cloud", "--pose-format", "apartment", "door-ajar", "ceiling-glimpse"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
   const Finished version = bridge("--version");
@@ -87,12 +88,28 @@ TEST_F(KinectBridge, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"--simulate apartment --log y --loop", "--frames"},
       {"--simulate apartment --channel ''", "channel"},
       {"--simulate apartment --encoding jpeg", "zlib"},
+      {"--simulate apartment --encoding png", "depth_scan knows no png"},
+      {"--simulate apartment --format image --encoding zlib", "image knows no zlib"},
+      {"--simulate apartment --format laser", "kinect_disparity"},
+      {"--simulate apartment --pose-format euler", "rigid_transform"},
       {"--simulate apartment --nonsense", "--nonsense"}};
   for (const auto& wrong : cases) {
     const Finished outcome = bridge(wrong.first);
     EXPECT_EQ(outcome.exit_code, 2) << wrong.first << "\n" << outcome.err;
     EXPECT_NE(outcome.err.find(wrong.second), std::string::npos) << wrong.first << "\n" << outcome.err;
   }
+}
+
+TEST_F(KinectBridge, SaysWhatPlanemapdMustBeToldOfAFormat) {
+  const Finished quiet = bridge("--simulate apartment --frames 2 --log '" + path("own") + "'");
+  EXPECT_EQ(quiet.err.find("such scans need"), std::string::npos) << quiet.err;
+  const Finished said =
+      bridge("--simulate apartment --frames 2 --format kinect_disparity --log '" + path("other") + "'");
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("such scans need: planemapd --set 'inputs.0.intrinsics=[585, 585, 320, 240]' --set "
+                          "'inputs.0.disparity=[0.075, 1090]'"),
+            std::string::npos)
+      << said.err;
 }
 
 TEST_F(KinectBridge, FailuresAreOneAndSayWhatToDo) {

@@ -1,6 +1,7 @@
 #include "codec/page_codec.hpp"
 
 #include <algorithm>
+#include <drake/lcmt_point_cloud.hpp>
 #include <planemap_lcm/status_t.hpp>
 #include <stdexcept>
 #include <utility>
@@ -145,6 +146,7 @@ Page encode(const Message& message) {
 template Page encode(const planemap_lcm::status_t&);
 template Page encode(const planes_t&);
 template Page encode(const reply_t&);
+template Page encode(const drake::lcmt_point_cloud&);
 
 Pages encode_pages(planes_t header, std::vector<plane_t> planes,
                    const std::vector<planemap_lcm::removed_plane_t>& removed, std::size_t page_bytes,

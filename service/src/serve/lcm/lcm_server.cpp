@@ -31,6 +31,7 @@ LcmServer::LcmServer(const ServiceConfig& config, lcm::LCM& bus, const MappingSe
       counters_(counters),
       answerer_(config, book),
       deltas_(config, book),
+      clouds_(config, book),
       outbox_(config.publish.page_pause_s),
       publish_repeats_(kWarnPeriodS),
       request_repeats_(kWarnPeriodS),
@@ -141,6 +142,7 @@ bool LcmServer::has_delta() const {
 double LcmServer::next_due_s() const {
   double due_s = std::min(status_due_s_, log_due_s_);
   if (has_delta() && outbox_.jobs() < kMaxJobs) due_s = std::min(due_s, delta_due_s_);
+  if (!config_.point_cloud_channel.empty()) due_s = std::min(due_s, cloud_due_s_);
   if (!outbox_.empty()) due_s = std::min(due_s, outbox_.due_s());
   return due_s;
 }
@@ -172,6 +174,10 @@ void LcmServer::publish_due(double now_s) {
     told_epoch_ = snapshot->epoch();
     told_revision_ = snapshot->revision();
     outbox_.add(config_.delta_channel, deltas_.make(snapshot));
+  }
+  if (!config_.point_cloud_channel.empty() && now_s >= cloud_due_s_) {
+    cloud_due_s_ = now_s + config_.point_cloud_period_s;
+    publish(config_.point_cloud_channel, clouds_.make(mapping_.snapshot()));
   }
   if (!outbox_.empty() && now_s >= outbox_.due_s()) {
     const auto message = outbox_.take(now_s, utime_now());

@@ -17,15 +17,16 @@
 #include "mapping/mapping_service.hpp"
 #include "serve/lcm/delta_maker.hpp"
 #include "serve/lcm/outbox.hpp"
+#include "serve/lcm/plane_cloud_maker.hpp"
 #include "serve/lcm/request_answerer.hpp"
 #include "serve/plane_book.hpp"
 #include "serve/status_board.hpp"
 
 namespace planemap::service {
 
-/// Everything that goes out over LCM: status, deltas, replies; all from one thread of its own, as LCM's providers ask
-/// for. Answers are worked out on another one: a floor plan of a large building takes seconds, in which status and
-/// deltas go on.
+/// Everything that goes out over LCM: status, deltas, clouds of planes, replies; all from one thread of its own, as
+/// LCM's providers ask for. Answers are worked out on another one: a floor plan of a large building takes seconds, in
+/// which status and deltas go on.
 class LcmServer {
  public:
   /// @param book  shared with whoever else answers; outlives the server
@@ -65,11 +66,13 @@ class LcmServer {
 
   // Of the publishing thread alone.
   DeltaMaker deltas_;
+  PlaneCloudMaker clouds_;
   Outbox outbox_;
   RepeatGuard publish_repeats_;
   double status_due_s_ = 0.0;
   double log_due_s_ = 0.0;
   double delta_due_s_ = 0.0;
+  double cloud_due_s_ = 0.0;
   std::uint64_t told_epoch_ = 0;
   std::uint64_t told_revision_ = 0;
 
