@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "config/service_config.hpp"
 
@@ -273,6 +274,18 @@ TEST(Config, WhatTheGrpcServerCannotDoIsRefused) {
     EXPECT_TRUE(load_overrides({listen})) << listen;
   }
   EXPECT_TRUE(load_overrides({"grpc.listen=0.0.0.0:7670", "grpc.tls_certificate=c", "grpc.tls_key=k"}));
+}
+
+TEST(Config, TheExampleOfTheDocumentationIsTaken) {
+  std::ifstream file(PLANEMAP_SOURCE_DIR "/docs/lcm.md");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const auto begin = text.find("```yaml\ninputs:");
+  ASSERT_NE(begin, std::string::npos);
+  const auto end = text.find("```", begin + 3);
+  const auto config = load_text(text.substr(begin + 8, end - begin - 8));
+  ASSERT_TRUE(config) << config.error().message;
+  ASSERT_EQ(config->inputs.size(), 3u);
+  EXPECT_EQ(config->inputs[1].disparity, (std::vector<double>{0.075, 1090.0}));
 }
 
 TEST(Config, EachSensorIsOneLine) {
