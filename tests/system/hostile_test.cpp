@@ -2,6 +2,7 @@
 // library.
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -12,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "formats/field_formats.hpp"
+#include "formats/pixels.hpp"
 #include "harness/messages.hpp"
 #include "harness/system_test.hpp"
 
@@ -71,6 +74,49 @@ std::vector<Bytes> bad_scans() {
   scan = wall_message(kUtime, 1);
   scan.fx = std::nan("");
   bad.push_back(encoded(scan));
+  return bad;
+}
+
+/// 64 MB of zeros where the message says 80 x 60 pixels.
+std::vector<std::uint8_t> inflating_bytes() {
+  return kinect_bridge::deflated(Bytes(std::size_t{64} << 20));
+}
+
+/// What other stacks' types can bring that is no scan.
+std::vector<Bytes> bad_field_scans() {
+  namespace bridge = kinect_bridge;
+  DepthScan wall;
+  wall.utime = kUtime;
+  wall.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
+  wall.depth.assign(80 * 60, 1000);
+  std::mt19937 random(11);
+  std::vector<Bytes> bad;
+  for (const Bytes& good :
+       {encoded(bridge::to_kinect_frame(wall, bridge::Encoding::kZlib)),
+        encoded(bridge::to_images(wall, bridge::Encoding::kZlib)), encoded(bridge::to_image(wall)),
+        encoded(bridge::to_image_array(wall, bridge::DrakePixels::kUint16, bridge::Encoding::kPng)),
+        encoded(bridge::to_image_array(wall, bridge::DrakePixels::kFloat32, bridge::Encoding::kRaw)),
+        encoded(bridge::to_pointcloud2(wall)), encoded(bridge::to_point_cloud(wall))}) {
+    add_truncations(bad, good);
+    for (const std::size_t size : {1u, 60u, 2000u}) {
+      Bytes noise = random_bytes(random, 8 + size);
+      std::copy_n(good.begin(), 8, noise.begin());
+      bad.push_back(noise);
+    }
+  }
+  auto frame = bridge::to_kinect_frame(wall, bridge::Encoding::kZlib);
+  frame.depth.depth_data = inflating_bytes();
+  frame.depth.depth_data_nbytes = static_cast<std::int32_t>(frame.depth.depth_data.size());
+  bad.push_back(encoded(frame));
+  auto images = bridge::to_images(wall, bridge::Encoding::kZlib);
+  images.images[1].data = inflating_bytes();
+  images.images[1].size = static_cast<std::int32_t>(images.images[1].data.size());
+  bad.push_back(encoded(images));
+  images.images[1].width = images.images[1].height = 4096;
+  images.images[1].row_stride = 0x7fffffff;
+  bad.push_back(encoded(images));
+  bad.push_back(encoded(bridge::to_kinect_disparity(wall, bridge::Encoding::kRaw)));  // no calibration
+  bad.push_back(encoded(bridge::to_rigid_transform(Eigen::Isometry3d::Identity(), kUtime)));
   return bad;
 }
 
@@ -191,6 +237,24 @@ TEST_F(Hostile, BadScansAreRejectedCountedAndCostNoMemory) {
   const auto expected = static_cast<std::int64_t>(bad.size());
   EXPECT_TRUE(bus_->wait_until([&] { return bus_->counters_beginning("scans.rejected.") >= expected; }, 10s));
   EXPECT_EQ(bus_->counters_beginning("scans.rejected."), expected);
+  expect_good_scans_are_mapped();
+  expect_scans_add_up();
+  EXPECT_LT(peak_memory(daemon_->pid()), memory + (std::int64_t{64} << 20));
+}
+
+TEST_F(Hostile, BadScansOfOtherStacksAreRejectedCountedAndCostNoMemory) {
+  ASSERT_NO_FATAL_FAILURE(start_daemon({"--set", "inputs.0.intrinsics=[75, 75, 40, 30]"}));
+  expect_good_scans_are_mapped();
+  const std::int64_t memory = peak_memory(daemon_->pid());
+  const std::vector<Bytes> bad = bad_field_scans();
+  ASSERT_EQ(bad.size(), 7u * 19u + 5u);
+  publish("PLANEMAP_SCAN", bad);
+  const auto expected = static_cast<std::int64_t>(bad.size());
+  EXPECT_TRUE(bus_->wait_until([&] { return bus_->counters_beginning("scans.rejected.") >= expected; }, 10s));
+  EXPECT_EQ(bus_->counters_beginning("scans.rejected."), expected);
+  EXPECT_EQ(bus_->counter("scans.rejected.disparity"), 1);
+  EXPECT_EQ(bus_->counter("scans.rejected.wrong_channel"), 1);
+  EXPECT_EQ(bus_->counter("scans.rejected.too_large"), 1);
   expect_good_scans_are_mapped();
   expect_scans_add_up();
   EXPECT_LT(peak_memory(daemon_->pid()), memory + (std::int64_t{64} << 20));
