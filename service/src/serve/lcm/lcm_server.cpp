@@ -7,11 +7,14 @@
 #include <exception>
 #include <utility>
 
+#include "common/background.hpp"
+
 namespace planemap::service {
 namespace {
 
 constexpr std::size_t kMaxRequests = 64;  // that wait for an answer
 constexpr std::size_t kMaxJobs = 16;      // answers that wait for their turn on the bus
+constexpr int kNice = 5;                  // of both threads: a third of the mapper's share of a core that is full
 constexpr double kLogPeriodS = 1.0;
 constexpr double kWarnPeriodS = 5.0;
 
@@ -84,6 +87,7 @@ planemap_lcm::status_t LcmServer::status() {
 }
 
 void LcmServer::run_answers(const std::stop_token& stop) {
+  run_in_background(kNice);
   while (!stop.stop_requested()) {
     Request request;
     {
@@ -118,6 +122,9 @@ void LcmServer::answer(const Request& request) {
 }
 
 void LcmServer::run(const std::stop_token& stop) {
+  // Outlines for a delta may take as long as a scan. Where there is one core, scans that wait for them would wait on
+  // and on; this way a delta is late, or tells of two scans.
+  run_in_background(kNice);
   while (!stop.stop_requested()) {
     try {
       take_answers();
