@@ -150,7 +150,7 @@ LatencyResult run_latency(const LatencyConfig& config, const std::vector<sources
   const double seconds = std::chrono::duration<double>(steady_clock::now() - begin).count();
   const double cpu_s = cpu_seconds(daemon.pid()) - cpu_begin_s;
   // What is under way still arrives, and the status that counts it; what was lost does not.
-  listener.listen_until([&] { return listener.meter().is_up_to_date(); }, 5s);
+  listener.listen_until([&] { return listener.meter().is_up_to_date(); }, 30s);
   const std::int64_t last_status = listener.status()->utime;
   const auto has_settled = [&] {
     if (listener.status()->utime <= last_status) return false;
@@ -158,7 +158,7 @@ LatencyResult run_latency(const LatencyConfig& config, const std::vector<sources
     return std::none_of(counters.begin(), counters.end(),
                         [](const auto& counter) { return counter.name == "scans.waiting" && counter.value != 0; });
   };
-  listener.listen_until(has_settled, 5s);
+  listener.listen_until(has_settled, 30s);
   fail_if_ended();
   LatencyResult result = result_of(listener);
   result.sent = sender.sent();
