@@ -82,11 +82,6 @@ const KnownType* known_type(std::uint64_t fingerprint) {
   return found == types.end() ? nullptr : &*found;
 }
 
-const KnownType* scan_type(std::uint64_t fingerprint) {
-  const KnownType* type = known_type(fingerprint);
-  return type != nullptr && type->family != ScanFamily::kAuto ? type : nullptr;
-}
-
 const KnownType& type_of(ScanFamily family) {
   const auto& types = known_types();
   return *std::find_if(types.begin(), types.end(), [&](const KnownType& type) { return type.family == family; });

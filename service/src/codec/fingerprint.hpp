@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -22,8 +21,6 @@ struct KnownType {
   const char* belongs;  ///< in words, where it comes in
 };
 
-/// The scan type of that fingerprint; nullptr: none.
-const KnownType* scan_type(std::uint64_t fingerprint);
 /// The type of that fingerprint, scan or not; nullptr: not known.
 const KnownType* known_type(std::uint64_t fingerprint);
 /// The scan type of a family. @pre not kAuto
