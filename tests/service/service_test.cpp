@@ -278,7 +278,8 @@ TEST_F(ServiceTest, HostileMessagesOnEveryChannelLeaveItRunning) {
   ASSERT_TRUE(mapped(2));
   EXPECT_EQ(counter("scans.received"), 12);
   EXPECT_EQ(counter("scans.rejected.unknown_type") + counter("scans.rejected.truncated") +
-                counter("scans.rejected.size") + counter("scans.rejected.time"),
+                counter("scans.rejected.size") + counter("scans.rejected.time") +
+                counter("scans.rejected.wrong_channel"),
             10);
   EXPECT_EQ(counter("scans.dropped.no_pose"), 0);
 }
