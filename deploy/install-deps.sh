@@ -30,6 +30,7 @@ readonly RUN_PACKAGES=(
   libpng16-16
   libprotobuf32
   libspdlog1.10
+  libsqlite3-0
   libyaml-cpp0.7
   util-linux          # unshare, taskset
   zlib1g
@@ -50,6 +51,7 @@ readonly BUILD_PACKAGES=(
   libpng-dev
   libprotobuf-dev
   libspdlog-dev
+  libsqlite3-dev
   libyaml-cpp-dev
   ninja-build
   nlohmann-json3-dev

@@ -1,4 +1,4 @@
-#include "map_check.hpp"
+#include "planemap/map_check.hpp"
 
 #include <array>
 #include <cmath>

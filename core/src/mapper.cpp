@@ -3,10 +3,10 @@
 #include <array>
 #include <utility>
 
-#include "map_check.hpp"
 #include "planemap/assignment.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/local_planes.hpp"
+#include "planemap/map_check.hpp"
 #include "planemap/neighbourhoods.hpp"
 #include "planemap/plane_map.hpp"
 #include "planemap/pool.hpp"
@@ -56,7 +56,7 @@ class Mapper::Impl {
   void restore(const MapSnapshot& map) {
     revision_ = map.revision();
     utime_ = map.utime();
-    for (const auto& block : map.blocks()) grid_.add_block(*block);
+    for (const auto& block : map.blocks()) grid_.add_block(block);
     planes_.restore(grid_, map.planes(), map.state());
     records_.assign(map.planes().begin(), map.planes().end());
     removed_.assign(map.removed().begin(), map.removed().end());

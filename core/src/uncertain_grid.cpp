@@ -96,11 +96,12 @@ std::uint32_t UncertainGrid::make_block(const BlockIndex& index) {
   return slot;
 }
 
-void UncertainGrid::add_block(const Block& block) {
-  const std::uint32_t slot = make_block(block.index());
-  make_own(slot, block.size());
-  *blocks_[slot] = block;
-  cell_count_ += block.size();
+void UncertainGrid::add_block(const std::shared_ptr<const Block>& block) {
+  const std::uint32_t slot = make_block(block->index());
+  blocks_[slot] = const_cast<Block*>(block.get());  // NOLINT(cppcoreguidelines-pro-type-const-cast): see below
+  table_.set(slot, block);
+  written_since_[slot] = shares_ - 1;  // shared: the first change is made to a copy
+  cell_count_ += block->size();
 }
 
 Block& UncertainGrid::growing_block(std::uint32_t slot) {

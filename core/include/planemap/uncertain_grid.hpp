@@ -75,8 +75,8 @@ class UncertainGrid {
   template <class Visit>
   void for_each_cell(Visit&& visit) const;
 
-  /// Takes in a copy of a block. @pre it holds no block of that index
-  void add_block(const Block& block);
+  /// Takes in a block, which is copied before it changes. @pre it holds no block of that index
+  void add_block(const std::shared_ptr<const Block>& block);
   /// Makes a table that of the blocks as they are now, in the order in which they were made; they are copied before
   /// they change again. Takes the memory that the table has.
   void share(BlockTable& table);
