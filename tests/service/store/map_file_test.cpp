@@ -158,7 +158,7 @@ TEST_F(MapFiles, OfOthersAreLeftAlone) {
   EXPECT_EQ(MapFile::open(folder_ / "none").error().kind, StoreError::Kind::kSystem);
 }
 
-TEST_F(MapFiles, EveryTruncationIsSeen) {
+TEST_F(MapFiles, TruncationsAreSeen) {
   closed_map(1);
   const std::string whole = bytes_of(path_);
   const auto cut = folder_ / "cut";
