@@ -327,6 +327,30 @@ TEST_F(RequestAnswererTest, CellsComeInPagesAndEachCanBeAskedForAgain) {
   EXPECT_EQ((*lost.pages)[1], (*reply.pages)[1]);
 }
 
+TEST_F(RequestAnswererTest, AnswersThatAreTooLargeAreRefusedWithWhatToAskInstead) {
+  const auto snapshot = walls_.snapshot();
+  const auto refusal_below = [&](std::size_t max_reply_bytes, const Request& request) {
+    RequestAnswerer answerer(make_config(), book_, max_reply_bytes);
+    const auto reply = answerer.answer(
+        request, snapshot, [] { return planemap_lcm::status_t{}; }, 123);
+    EXPECT_EQ(only_page(reply).status, reply_t::STATUS_TOO_LARGE);
+    EXPECT_EQ(only_page(reply).n_cells, 0);
+    return only_page(reply).error;
+  };
+  const std::string cells = std::to_string(snapshot->cell_count());
+  const auto for_cells = request_for(request_t::OPERATION_CELLS);
+  EXPECT_EQ(refusal_below(1000, for_cells),
+            "the map's " + cells + " cells are more than 1000 bytes; ask for those of regions");
+  const std::size_t just = 2 * snapshot->cell_count() * sizeof(planemap_lcm::cell_t);
+  const auto pages = ask(for_cells, snapshot).end;
+  EXPECT_EQ(refusal_below(4095, request_for(request_t::OPERATION_SNAPSHOT)),
+            "the answer is 1 pages of 4096 bytes, more than 4095 bytes in all; ask for less at a time");
+  RequestAnswerer enough(make_config(), book_, just);
+  const auto reply = enough.answer(
+      for_cells, snapshot, [] { return planemap_lcm::status_t{}; }, 123);
+  EXPECT_EQ(reply.end, pages);
+}
+
 TEST_F(RequestAnswererTest, CellsCanBeHadOfTheRevisionOfThePlanes) {
   const auto snapshot = walls_.snapshot();
   ask(request_for(request_t::OPERATION_SNAPSHOT), snapshot);

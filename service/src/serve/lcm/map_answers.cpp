@@ -45,11 +45,11 @@ std::optional<Refusal> add(reply_t& answer, const Expected<Result>& result, More
   return std::nullopt;
 }
 
-std::optional<Refusal> add_cells(const MapSnapshot& snapshot, reply_t& answer) {
-  if (snapshot.cell_count() > kMaxReplyBytes / sizeof(planemap_lcm::cell_t)) {
+std::optional<Refusal> add_cells(const MapSnapshot& snapshot, reply_t& answer, std::size_t max_reply_bytes) {
+  if (snapshot.cell_count() > max_reply_bytes / sizeof(planemap_lcm::cell_t)) {
     return Refusal{reply_t::STATUS_TOO_LARGE,
-                   fmt::format("the map's {} cells are more than {} MiB; ask for those of regions",
-                               snapshot.cell_count(), kMaxReplyBytes >> 20)};
+                   fmt::format("the map's {} cells are more than {} bytes; ask for those of regions",
+                               snapshot.cell_count(), max_reply_bytes)};
   }
   snapshot.for_each_cell([&](const CellView& cell) { answer.cells.push_back(to_wire(cell)); });
   return std::nullopt;
@@ -128,7 +128,8 @@ std::optional<Refusal> check_arguments(const Request& request) {
   return std::nullopt;
 }
 
-std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request& request, reply_t& answer) {
+std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request& request, reply_t& answer,
+                                   std::size_t max_reply_bytes) {
   const request_t& arguments = request.arguments;
   const auto filter = to_filter(arguments.filter);
   if (!filter) return refuse(filter.error());
@@ -137,7 +138,7 @@ std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request
       for (const DescribedPlane& plane : queries.planes()) add_to(answer, plane);
       return std::nullopt;
     case request_t::OPERATION_CELLS:
-      return add_cells(queries.snapshot(), answer);
+      return add_cells(queries.snapshot(), answer, max_reply_bytes);
     case request_t::OPERATION_NEAREST:
       return add_nearest(queries, arguments.nearest.front(), *filter, answer);
     case request_t::OPERATION_RAYS:

@@ -32,6 +32,6 @@ std::optional<Refusal> check_arguments(const Request& request);
 /// @pre is_map_operation(request.operation), and check_arguments() found nothing
 /// @return why there is no answer; empty: there is
 std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request& request,
-                                   planemap_lcm::reply_t& answer);
+                                   planemap_lcm::reply_t& answer, std::size_t max_reply_bytes = kMaxReplyBytes);
 
 }  // namespace planemap::service

@@ -25,11 +25,12 @@ Reply all_pages(const Request& request, std::shared_ptr<const Pages> pages) {
 
 }  // namespace
 
-RequestAnswerer::RequestAnswerer(const ServiceConfig& config, PlaneBook& book)
+RequestAnswerer::RequestAnswerer(const ServiceConfig& config, PlaneBook& book, std::size_t max_reply_bytes)
     : book_(book),
       frame_(config.map.frame),
       page_bytes_(static_cast<std::size_t>(config.publish.page_bytes)),
-      kept_replies_(static_cast<std::size_t>(config.publish.kept_replies)) {}
+      kept_replies_(static_cast<std::size_t>(config.publish.kept_replies)),
+      max_reply_bytes_(max_reply_bytes) {}
 
 Reply RequestAnswerer::answer(const Request& request, const std::shared_ptr<const MapSnapshot>& snapshot,
                               const std::function<planemap_lcm::status_t()>& status, std::int64_t utime) {
@@ -142,15 +143,16 @@ tl::expected<std::shared_ptr<const Pages>, Refusal> RequestAnswerer::pages_of(
   if (same != kept_.end()) {
     pages = same->pages;
   } else {
-    if (auto refusal = answer_from(*book_.open(snapshot), request, header)) {
+    if (auto refusal = answer_from(*book_.open(snapshot), request, header, max_reply_bytes_)) {
       return tl::make_unexpected(std::move(*refusal));
     }
     auto made = encode_pages(std::move(header), page_bytes_, snapshot->cell_size_m());
     if (!made) return tl::make_unexpected(Refusal{reply_t::STATUS_TOO_LARGE, made.error().message});
-    if (made->size() * page_bytes_ > kMaxReplyBytes) {
+    if (made->size() * page_bytes_ > max_reply_bytes_) {
       return tl::make_unexpected(
           Refusal{reply_t::STATUS_TOO_LARGE,
-                  fmt::format("the answer is {} pages, more than {} MiB", made->size(), kMaxReplyBytes >> 20)});
+                  fmt::format("the answer is {} pages of {} bytes, more than {} bytes in all; ask for less at a time",
+                              made->size(), page_bytes_, max_reply_bytes_)});
     }
     pages = std::make_shared<const Pages>(std::move(*made));
   }

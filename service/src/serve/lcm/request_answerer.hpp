@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -30,7 +31,8 @@ struct Reply {
 /// again, and the cells that go with planes. Not thread-safe.
 class RequestAnswerer {
  public:
-  RequestAnswerer(const ServiceConfig& config, PlaneBook& book);
+  /// @param max_reply_bytes  greater answers are refused
+  RequestAnswerer(const ServiceConfig& config, PlaneBook& book, std::size_t max_reply_bytes = kMaxReplyBytes);
 
   /// @param snapshot  the newest
   /// @param status    makes the service's status; called only if it is asked for
@@ -69,6 +71,7 @@ class RequestAnswerer {
   std::string frame_;
   std::size_t page_bytes_;
   std::size_t kept_replies_;
+  std::size_t max_reply_bytes_;
   std::deque<Kept> kept_;  ///< the newest in front
 };
 
