@@ -42,7 +42,9 @@ std::uint32_t removed_checksum(const RemovedPlane& removed) {
 std::string facts_checksum(const FactRows& facts) {
   std::string all;
   for (const auto& [key, value] : facts) {
-    if (key != "checksum") all += key + '\0' + value + '\0';
+    if (key == "checksum") continue;
+    all.append(key).push_back('\0');
+    all.append(value).push_back('\0');
   }
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(all.data());
   return fmt::format("{:08x}", checksum({bytes, all.size()}, {}));
