@@ -19,7 +19,9 @@ class HelperThread final : public SecondThread {
 
  private:
   void run(const std::stop_token& stop);
+  void keep_off_this_processor();
 
+  int kept_off_ = -1;  ///< processor that the thread may not run on; of the caller of begin() alone
   std::mutex mutex_;
   std::condition_variable_any changed_;
   void (*work_)(void*) = nullptr;  ///< nullptr: it is done
