@@ -23,7 +23,7 @@ struct Arguments {
 };
 
 void define_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--scans", arguments.scale.scans, "to map; 20,000 are some 11,000 square metres of floor")
+  app.add_option("--scans", arguments.scale.scans, "to map; 20,000 are some 10,700 square metres of floor")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
   app.add_option("--window", arguments.scale.window,
