@@ -6,7 +6,6 @@
 
 #include "lcm/lcm_map_watch.hpp"
 #include "lcm/lcm_requester.hpp"
-#include "lcm/wire_queries.hpp"
 
 namespace planemap::client {
 namespace {
@@ -37,16 +36,14 @@ Expected<std::unique_ptr<LcmMapClient>> LcmMapClient::connect(const std::string&
 }
 
 LcmMapClient::LcmMapClient(std::shared_ptr<lcm::LCM> bus, const LcmClientOptions& options)
-    : LcmMapClient(std::make_unique<LcmRequester>(std::move(bus), options)) {}
-
-LcmMapClient::LcmMapClient(std::unique_ptr<LcmRequester> requester)
-    : WireMapClient(
-          std::make_unique<WireQueries>([r = requester.get()](const planemap_lcm::request_t& request, Timeout timeout) {
-            return r->ask(request, timeout);
-          })),
-      requester_(std::move(requester)) {}
+    : requester_(std::make_unique<LcmRequester>(std::move(bus), options)) {}
 
 LcmMapClient::~LcmMapClient() = default;
+
+Expected<std::vector<planemap_lcm::reply_t>> LcmMapClient::ask(const planemap_lcm::request_t& request,
+                                                               Timeout timeout) {
+  return requester_->ask(request, timeout);
+}
 
 std::unique_ptr<MapWatch> LcmMapClient::watch() {
   return std::make_unique<LcmMapWatch>(*requester_);

@@ -29,6 +29,18 @@ class GrpcChannel {
   /// The same for a call without end.
   void prepare(grpc::ClientContext& context) const;
 
+  /// Makes a call that brings one message.
+  template <class Stub, class Request, class Response>
+  Expected<Response> call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                          const Request& request, std::chrono::milliseconds timeout) const {
+    grpc::ClientContext context;
+    prepare(context, timeout);
+    Response response;
+    const grpc::Status status = (stub.*method)(&context, request, &response);
+    if (!status.ok()) return tl::make_unexpected(error_of(status, timeout));
+    return response;
+  }
+
   /// Why a call failed, in words that say what to do. @pre !status.ok()
   Error error_of(const grpc::Status& status, std::chrono::milliseconds timeout) const;
 

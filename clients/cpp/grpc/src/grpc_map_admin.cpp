@@ -5,16 +5,10 @@
 namespace planemap::client {
 namespace {
 
-/// Makes a call that brings nothing but its success, or one number.
 template <class Request, class Response>
 Expected<Response> call(GrpcChannel& channel, std::chrono::milliseconds timeout,
                         grpc::Status (v1::Admin::Stub::*method)(grpc::ClientContext*, const Request&, Response*)) {
-  grpc::ClientContext context;
-  channel.prepare(context, timeout);
-  Response response;
-  const grpc::Status status = (channel.admin().*method)(&context, Request(), &response);
-  if (!status.ok()) return tl::make_unexpected(channel.error_of(status, timeout));
-  return response;
+  return channel.call(channel.admin(), method, Request(), timeout);
 }
 
 constexpr auto kNothing = [](const auto&) {};

@@ -21,16 +21,10 @@ using std::chrono::milliseconds;
 constexpr std::size_t kMostNearestPlanes = 5000;
 constexpr std::size_t kMostRays = 2000;
 
-/// Makes a call that brings one message.
 template <class Request, class Response>
 Expected<Response> call(GrpcChannel& channel, const Request& request, milliseconds timeout,
                         grpc::Status (v1::PlaneMap::Stub::*method)(grpc::ClientContext*, const Request&, Response*)) {
-  grpc::ClientContext context;
-  channel.prepare(context, timeout);
-  Response response;
-  const grpc::Status status = (channel.plane_map().*method)(&context, request, &response);
-  if (!status.ok()) return tl::make_unexpected(channel.error_of(status, timeout));
-  return response;
+  return channel.call(channel.plane_map(), method, request, timeout);
 }
 
 /// Where a batch that comes in several calls is answered by another version than its begin, all begins anew.

@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "lcm/wire_queries.hpp"
+#include "lcm/query_answers.hpp"
 #include "map_mirror.hpp"
 #include "serve/lcm/map_answers.hpp"
 
@@ -26,8 +26,8 @@ class InProcessMapWatch final : public MapWatch {
  public:
   using Look = std::function<std::shared_ptr<const SnapshotQueries>()>;
 
-  InProcessMapWatch(Look look, const WireQueries& queries, milliseconds look_after)
-      : look_(std::move(look)), queries_(queries), look_after_(look_after) {}
+  InProcessMapWatch(Look look, MapClient& client, milliseconds look_after)
+      : look_(std::move(look)), client_(client), look_after_(look_after) {}
 
   Expected<MapChange> next(milliseconds timeout) override;
   const Map& map() const override { return mirror_.map(); }
@@ -36,7 +36,7 @@ class InProcessMapWatch final : public MapWatch {
   bool has_news() const;
 
   Look look_;
-  const WireQueries& queries_;
+  MapClient& client_;
   milliseconds look_after_;
   MapMirror mirror_;
 };
@@ -52,7 +52,7 @@ Expected<MapChange> InProcessMapWatch::next(milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   for (;;) {
     if (has_news()) {
-      auto map = queries_.snapshot(timeout);
+      auto map = client_.snapshot(timeout);
       if (!map) return tl::make_unexpected(map.error());
       MapChange change = mirror_.replace(std::move(*map));
       change.caught_up = change.new_map;  // nothing was lost
@@ -110,13 +110,7 @@ Expected<Replies> InProcessMapClient::Source::answer(const request_t& arguments)
 }
 
 InProcessMapClient::InProcessMapClient(MapSource source, const InProcessOptions& options)
-    : InProcessMapClient(std::make_unique<Source>(std::move(source)), options) {}
-
-InProcessMapClient::InProcessMapClient(std::unique_ptr<Source> source, const InProcessOptions& options)
-    : WireMapClient(std::make_unique<WireQueries>(
-          [s = source.get()](const request_t& request, Timeout /*timeout*/) { return s->answer(request); })),
-      source_(std::move(source)),
-      options_(options) {}
+    : source_(std::make_unique<Source>(std::move(source))), options_(options) {}
 
 InProcessMapClient::~InProcessMapClient() = default;
 
@@ -124,8 +118,12 @@ Expected<Status> InProcessMapClient::status(Timeout /*timeout*/) {
   return source_->status();
 }
 
+Expected<Replies> InProcessMapClient::ask(const request_t& request, Timeout /*timeout*/) {
+  return source_->answer(request);
+}
+
 std::unique_ptr<MapWatch> InProcessMapClient::watch() {
-  return std::make_unique<InProcessMapWatch>([this] { return source_->queries(); }, queries(), options_.look_after);
+  return std::make_unique<InProcessMapWatch>([this] { return source_->queries(); }, *this, options_.look_after);
 }
 
 }  // namespace planemap::client

@@ -50,7 +50,7 @@ class LcmMapClient final : public WireMapClient {
   std::size_t malformed_count() const;
 
  private:
-  explicit LcmMapClient(std::unique_ptr<LcmRequester> requester);
+  Expected<std::vector<planemap_lcm::reply_t>> ask(const planemap_lcm::request_t& request, Timeout timeout) override;
 
   std::unique_ptr<LcmRequester> requester_;
 };

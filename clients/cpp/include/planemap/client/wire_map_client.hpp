@@ -1,18 +1,19 @@
 #pragma once
 
-#include <memory>
 #include <planemap/client/map_client.hpp>
 #include <span>
+#include <vector>
+
+namespace planemap_lcm {
+class reply_t;
+class request_t;
+}  // namespace planemap_lcm
 
 namespace planemap::client {
-
-class WireQueries;
 
 /// What clients have in common that put their questions as planemap_lcm.request_t, whoever answers them.
 class WireMapClient : public MapClient {
  public:
-  ~WireMapClient() override;
-
   Expected<Status> status(Timeout timeout) override;
   Expected<Map> snapshot(Timeout timeout) final;
   Expected<Map> cells(Timeout timeout) final;
@@ -24,12 +25,14 @@ class WireMapClient : public MapClient {
   Expected<PlaneAnswer> plane(std::int64_t id, Timeout timeout) final;
   Expected<FloorplanAnswer> floorplan(const FloorplanQuery& query, Timeout timeout) final;
 
- protected:
-  explicit WireMapClient(std::unique_ptr<WireQueries> queries);
-  const WireQueries& queries() const { return *queries_; }
-
  private:
-  std::unique_ptr<WireQueries> queries_;
+  /// Gives all pages of the answer to a request, by number. Where the request names the epoch and revision of an
+  /// earlier answer, the answer is of these, or an error (kGone).
+  virtual Expected<std::vector<planemap_lcm::reply_t>> ask(const planemap_lcm::request_t& request, Timeout timeout) = 0;
+
+  template <class Add>
+  Expected<MapVersion> ask_part(planemap_lcm::request_t request, const MapVersion& version, Timeout timeout,
+                                const Add& add);
 };
 
 }  // namespace planemap::client

@@ -34,7 +34,7 @@ class InProcessMapClient final : public WireMapClient {
 
  private:
   class Source;
-  InProcessMapClient(std::unique_ptr<Source> source, const InProcessOptions& options);
+  Expected<std::vector<planemap_lcm::reply_t>> ask(const planemap_lcm::request_t& request, Timeout timeout) override;
 
   std::unique_ptr<Source> source_;
   InProcessOptions options_;
