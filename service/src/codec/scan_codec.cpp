@@ -31,6 +31,14 @@ Decoded<const KnownType*> wanted_type(std::span<const std::uint8_t> message, con
 
 }  // namespace
 
+Decoded<void> check_end(const WireReader& reader, const char* type) {
+  if (!reader.ok()) {
+    return reject("truncated", fmt::format("{}: ends within a member, or a count says more than follows", type));
+  }
+  if (reader.remaining() != 0) return reject("size", fmt::format("{}: {} bytes too many", type, reader.remaining()));
+  return {};
+}
+
 Decoded<DecodedScan> decode_scan(std::span<const std::uint8_t> message, std::size_t max_bytes,
                                  const ScanFormat& format) {
   const auto type = wanted_type(message, format);

@@ -42,14 +42,6 @@ BotImage read_image(WireReader& reader, const char* type) {
   return read;
 }
 
-Decoded<void> check_end(const WireReader& reader, const char* type) {
-  if (!reader.ok()) {
-    return reject("truncated", fmt::format("{}: ends within a member, or a count says more than follows", type));
-  }
-  if (reader.remaining() != 0) return reject("size", fmt::format("{}: {} bytes too many", type, reader.remaining()));
-  return {};
-}
-
 }  // namespace
 
 Decoded<DecodedScan> decode_images(WireReader reader, const ScanFormat& format, std::size_t max_bytes) {

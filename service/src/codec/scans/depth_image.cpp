@@ -68,18 +68,18 @@ Decoded<void> check_data_size(const WireImage& image, std::size_t image_bytes) {
     return reject("size", fmt::format("{}: {} bytes of raw data for {} rows of {} bytes, must be {}", image.type,
                                       image.data.size(), image.height, image.row_stride, image_bytes));
   }
-  if (image.packing != Packing::kRaw && !could_inflate_to(image.data.size(), image_bytes)) {
-    return reject("size",
-                  fmt::format("{}: {} bytes of {} data cannot hold {} x {} pixels", image.type, image.data.size(),
-                              image.packing == Packing::kPng ? "PNG" : "zlib", image.width, image.height));
-  }
-  return {};
+  if (image.packing == Packing::kRaw) return {};
+  return check_packed_size(image.type, image.packing == Packing::kPng ? "PNG" : "zlib", image.data.size(), image.width,
+                           image.height, image_bytes);
 }
 
 }  // namespace
 
-bool could_inflate_to(std::size_t packed_bytes, std::size_t bytes) {
-  return packed_bytes * kMaxZlibRatio >= bytes;
+Decoded<void> check_packed_size(const char* type, const char* packing, std::size_t packed_bytes, std::int32_t width,
+                                std::int32_t height, std::size_t image_bytes) {
+  if (packed_bytes * kMaxZlibRatio >= image_bytes) return {};
+  return reject("size", fmt::format("{}: {} bytes of {} data cannot hold {} x {} pixels", type, packed_bytes, packing,
+                                    width, height));
 }
 
 Decoded<void> check_image_size(const char* type, std::int32_t width, std::int32_t height, std::size_t image_bytes,

@@ -52,7 +52,9 @@ Decoded<void> check_image_size(const char* type, std::int32_t width, std::int32_
                                std::size_t max_bytes);
 /// Decompresses into exactly `out`; the stream has to end with its last byte.
 Decoded<void> inflate_exactly(const char* type, std::span<const std::uint8_t> data, std::span<std::uint8_t> out);
-/// Whether zlib could pack so many bytes so densely; before memory is taken for them.
-bool could_inflate_to(std::size_t packed_bytes, std::size_t bytes);
+/// Checks that an image's pixels could be packed so densely, before memory is taken for them.
+/// @param packing  "zlib" or "PNG"
+Decoded<void> check_packed_size(const char* type, const char* packing, std::size_t packed_bytes, std::int32_t width,
+                                std::int32_t height, std::size_t image_bytes);
 
 }  // namespace planemap::service

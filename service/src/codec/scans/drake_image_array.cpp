@@ -122,10 +122,7 @@ Decoded<DecodedScan> decode_image_array(WireReader reader, const ScanFormat& for
     DrakeImage image = read_image(reader);
     if (image.pixel_format == lcmt_image::PIXEL_FORMAT_DEPTH) depths.push_back(image);
   }
-  if (!reader.ok()) {
-    return reject("truncated", fmt::format("{}: ends within a member, or a count says more than follows", kType));
-  }
-  if (reader.remaining() != 0) return reject("size", fmt::format("{}: {} bytes too many", kType, reader.remaining()));
+  if (const auto end = check_end(reader, kType); !end) return tl::make_unexpected(end.error());
   const auto depth = chosen(depths, count, format.frame);
   if (!depth) return tl::make_unexpected(depth.error());
   auto image = with_codes(*depth);

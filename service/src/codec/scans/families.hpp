@@ -10,6 +10,9 @@ namespace planemap::service {
 // One decoder a family; each reads behind the fingerprint, checks every number before memory is taken for it and names
 // the type in its errors. max_bytes: greatest image or cloud after decompression.
 
+/// Checks that the reader stands at the end of a whole message.
+Decoded<void> check_end(const WireReader& reader, const char* type);
+
 /// planemap_lcm.depth_scan_t. @param message_bytes  of the whole message, for its errors
 Decoded<DecodedScan> decode_depth_scan(WireReader reader, std::size_t message_bytes, std::size_t max_bytes);
 /// planemap_lcm.point_scan_t

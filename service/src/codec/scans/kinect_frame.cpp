@@ -42,10 +42,7 @@ Decoded<KinectDepth> read_frame(WireReader& reader) {
   depth.compression = reader.i8();
   depth.uncompressed_size = reader.i32();
   reader.bytes(kTailBytes);
-  if (!reader.ok()) {
-    return reject("truncated", fmt::format("{}: ends within a member, or a count says more bytes than follow", kType));
-  }
-  if (reader.remaining() != 0) return reject("size", fmt::format("{}: {} bytes too many", kType, reader.remaining()));
+  if (const auto end = check_end(reader, kType); !end) return tl::make_unexpected(end.error());
   return depth;
 }
 
@@ -73,9 +70,7 @@ Decoded<FormatInfo> format_info(std::int8_t format) {
 
 /// Bytes of the depth image without compression. The libfreenect driver unpacks packed formats to 16 bits and leaves
 /// the format as it was, so it is the length that tells.
-Decoded<std::size_t> image_bytes(const KinectDepth& depth, const FormatInfo& info) {
-  const auto pixels = static_cast<std::size_t>(std::max<int>(depth.width, 0)) *
-                      static_cast<std::size_t>(std::max<int>(depth.height, 0));
+Decoded<std::size_t> image_bytes(const KinectDepth& depth, std::size_t pixels, const FormatInfo& info) {
   const std::size_t whole = 2 * pixels;
   const std::size_t packed = (pixels * static_cast<std::size_t>(info.bits) + 7) / 8;
   const bool is_raw = depth.compression == depth_msg_t::COMPRESSION_NONE;
@@ -137,15 +132,13 @@ Decoded<DecodedScan> decode_kinect_frame(WireReader reader, const ScanFormat& fo
                              static_cast<std::size_t>(std::max<int>(depth->height, 0));
   auto scan = scan_of(image, 2 * pixels, format, max_bytes);
   if (!scan) return tl::make_unexpected(scan.error());
-  const auto size = image_bytes(*depth, *info);
+  const auto size = image_bytes(*depth, pixels, *info);
   if (!size) return tl::make_unexpected(size.error());
   std::span<const std::uint8_t> bytes = depth->data;
   std::vector<std::uint8_t> inflated;
   if (depth->compression == depth_msg_t::COMPRESSION_ZLIB) {
-    if (!could_inflate_to(depth->data.size(), *size)) {
-      return reject("size", fmt::format("{}: {} bytes of zlib data cannot hold {} x {} pixels", kType,
-                                        depth->data.size(), depth->width, depth->height));
-    }
+    const auto packed = check_packed_size(kType, "zlib", depth->data.size(), depth->width, depth->height, *size);
+    if (!packed) return tl::make_unexpected(packed.error());
     inflated.resize(*size);
     if (const auto done = inflate_exactly(kType, depth->data, inflated); !done) {
       return tl::make_unexpected(done.error());

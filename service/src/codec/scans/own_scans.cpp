@@ -107,10 +107,11 @@ Decoded<DecodedScan> decode_depth_scan(WireReader reader, std::size_t message_by
                   fmt::format("depth_scan_t: {} bytes of raw data for {} x {} pixels, must be {}", header->data.size(),
                               header->scan.intrinsics.width, header->scan.intrinsics.height, *image_bytes));
   }
-  if (!is_raw && !could_inflate_to(header->data.size(), *image_bytes)) {
-    return reject("size",
-                  fmt::format("depth_scan_t: {} bytes of zlib data cannot hold {} x {} pixels", header->data.size(),
-                              header->scan.intrinsics.width, header->scan.intrinsics.height));
+  if (!is_raw) {
+    const PinholeIntrinsics& camera = header->scan.intrinsics;
+    const auto packed =
+        check_packed_size(kDepthType, "zlib", header->data.size(), camera.width, camera.height, *image_bytes);
+    if (!packed) return tl::make_unexpected(packed.error());
   }
   // Checked before the pixels are unpacked: what was damaged on the way is not worth the work.
   if (const auto sum = checksum(header->data); sum != header->crc32) {

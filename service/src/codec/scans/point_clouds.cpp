@@ -167,14 +167,6 @@ Decoded<DecodedScan> to_point_scan(const WireCloud& cloud, const ScanFormat& for
   return DecodedScan{std::move(scan), cloud.seq};
 }
 
-Decoded<void> check_end(const WireReader& reader, const char* type) {
-  if (!reader.ok()) {
-    return reject("truncated", fmt::format("{}: ends within a member, or a count says more than follows", type));
-  }
-  if (reader.remaining() != 0) return reject("size", fmt::format("{}: {} bytes too many", type, reader.remaining()));
-  return {};
-}
-
 }  // namespace
 
 Decoded<DecodedScan> decode_point_cloud2(WireReader reader, const ScanFormat& format, std::size_t max_bytes) {
