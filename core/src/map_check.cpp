@@ -1,6 +1,5 @@
 #include "planemap/map_check.hpp"
 
-#include <array>
 #include <cmath>
 #include <string>
 #include <unordered_map>
@@ -66,14 +65,6 @@ Expected<void> check_plane(const PlaneRecord& plane, std::size_t labelled, const
   return {};
 }
 
-struct IndexHash {
-  std::size_t operator()(const std::array<int, 3>& i) const {
-    const auto word = [](int x) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)); };
-    return static_cast<std::size_t>((word(i[0]) * 73856093ULL ^ word(i[1]) * 19349663ULL ^ word(i[2]) * 83492791ULL) *
-                                    0x9e3779b97f4a7c15ULL);
-  }
-};
-
 }  // namespace
 
 Expected<void> check_map(const MapperConfig& config, const MapSnapshot& map) {
@@ -89,15 +80,14 @@ Expected<void> check_map(const MapperConfig& config, const MapSnapshot& map) {
   if (!state.last_pose.allFinite() || !std::isfinite(state.pose_variance_m2) || state.scans < 0) {
     return fail("what is known of the poses' errors is not finite");
   }
-  std::unordered_set<std::array<int, 3>, IndexHash> seen;
+  std::unordered_set<BlockIndex, BlockIndexHash> seen;
   std::unordered_map<PlaneSlot, std::size_t> labelled;
   for (const auto& block : map.blocks()) {
     const BlockIndex& index = block->index();
     if (index.minCoeff() < -kFarthestBlock || index.maxCoeff() > kFarthestBlock) {
       return fail("block " + text_of(index) + " is out of range");
     }
-    if (!seen.insert({index.x(), index.y(), index.z()}).second)
-      return fail("block " + text_of(index) + " is there twice");
+    if (!seen.insert(index).second) return fail("block " + text_of(index) + " is there twice");
     for (std::size_t i = 0; i < block->size(); ++i) {
       const Cell& cell = block->cell(i);
       if (const char* problem = problem_of(cell)) return fail("cell " + text_of(block->cell_index(i)) + " " + problem);

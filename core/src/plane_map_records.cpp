@@ -28,8 +28,7 @@ void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord&
   record.merged = plane.merged;
   record.state.reset();  // one that waits in the pool is taken again
   const std::shared_ptr<PlaneState> kept = state_pool_.take();
-  *kept = {plane.statistics,         plane.fit, plane.pose_evidence, plane.worn_cells, plane.cells_when_bridged,
-           plane.scans_since_bridged};
+  *kept = plane;
   record.state = kept;
 }
 
@@ -41,17 +40,10 @@ void PlaneMap::restore(const UncertainGrid& grid, std::span<const std::shared_pt
                        const MapperState& state) {
   states_.resize(state.next_plane_id);
   for (const auto& record : records) {
-    const PlaneState& kept = *record->state;
-    auto plane = std::make_unique<State>(kept.statistics.origin_m());
-    plane->statistics = kept.statistics;
-    plane->fit = kept.fit;
-    plane->pose_evidence = kept.pose_evidence;
+    auto plane = std::make_unique<State>(*record->state);
     plane->merged = record->merged;
     plane->first_seen_utime = record->first_seen_utime;
     plane->last_seen_utime = record->last_seen_utime;
-    plane->worn_cells = kept.worn_cells;
-    plane->cells_when_bridged = kept.cells_when_bridged;
-    plane->scans_since_bridged = kept.scans_since_bridged;
     plane->cells.reserve(record->cell_count);
     states_[record->id] = std::move(plane);
   }

@@ -17,6 +17,16 @@ constexpr int kBlockBits = 3;
 constexpr int kBlockEdge = 1 << kBlockBits;  ///< cells along an edge of a block
 constexpr int kBlockCells = kBlockEdge * kBlockEdge * kBlockEdge;
 
+/// Teschner et al., Optimized Spatial Hashing, 2003; then mixed, since the buckets are taken from the low bits.
+struct BlockIndexHash {
+  std::size_t operator()(const BlockIndex& i) const {
+    std::uint64_t h = static_cast<std::uint32_t>(i.x()) * 73856093ULL ^
+                      static_cast<std::uint32_t>(i.y()) * 19349663ULL ^ static_cast<std::uint32_t>(i.z()) * 83492791ULL;
+    h = (h ^ h >> 29) * 0x9e3779b97f4a7c15ULL;
+    return static_cast<std::size_t>(h >> 32);
+  }
+};
+
 /// The block that holds a cell; arithmetic shift, so it rounds down below zero too.
 inline BlockIndex block_of(const CellIndex& c) {
   return {c.x() >> kBlockBits, c.y() >> kBlockBits, c.z() >> kBlockBits};

@@ -46,9 +46,8 @@ struct ScanReport {
 class Mapper {
  public:
   /// @param epoch   names this life of the map; below 2^53
-  /// @param second  does some of the work; not owned, outlives the mapper. nullptr: the caller's thread does it all.
-  /// The
-  ///                map is the same
+  /// @param second  does some of the work, and the map is the same; not owned, outlives the mapper. nullptr: the
+  ///                caller's thread does it all
   Mapper(const MapperConfig& config, std::uint64_t epoch, SecondThread* second = nullptr);
   /// Goes on with a map that a mapper made, from any of its snapshots: planes keep ids, records and evidence to the
   /// bit, the next plane gets state().next_plane_id. Not kept are for how long cells have been seen through, and the

@@ -89,18 +89,13 @@ class PlaneMap {
   static PlaneId id_of(PlaneSlot slot) { return slot; }
 
  private:
-  struct State {
-    explicit State(const Eigen::Vector3d& origin_m) : statistics(origin_m) {}
-    PlaneStatistics statistics;
-    PlaneFit fit;
-    PoseEvidence pose_evidence;
+  struct State : PlaneState {
+    explicit State(const Eigen::Vector3d& origin_m) { statistics = PlaneStatistics(origin_m); }
+    explicit State(const PlaneState& kept) : PlaneState(kept) {}
     std::vector<CellRef> cells;  ///< also cells that have left; a cell's own label decides
     std::vector<PlaneId> merged;
     std::int64_t first_seen_utime = 0;
     std::int64_t last_seen_utime = 0;
-    std::size_t worn_cells = 0;  ///< that it has lost to wear, ever
-    std::size_t cells_when_bridged = 0;
-    int scans_since_bridged = 0;
     bool touched = false;  ///< by this scan
     bool dirty = false;    ///< since the last update_records()
   };

@@ -83,16 +83,6 @@ class UncertainGrid {
 
  private:
   static constexpr std::uint32_t kNoBlock = 0xffffffff;
-  struct IndexHash {
-    std::size_t operator()(const BlockIndex& i) const {
-      // Teschner et al., Optimized Spatial Hashing, 2003; then mixed, since the buckets are taken from the low bits.
-      std::uint64_t h = static_cast<std::uint32_t>(i.x()) * 73856093ULL ^
-                        static_cast<std::uint32_t>(i.y()) * 19349663ULL ^
-                        static_cast<std::uint32_t>(i.z()) * 83492791ULL;
-      h ^= h >> 29;
-      return static_cast<std::size_t>(h * 0x9e3779b97f4a7c15ULL);
-    }
-  };
 
   std::uint32_t block_slot(const BlockIndex& index) const;
   std::uint32_t make_block(const BlockIndex& index);
@@ -108,7 +98,7 @@ class UncertainGrid {
   double cell_size_m_;
   double inverse_cell_size_;
   std::size_t cell_count_ = 0;
-  std::unordered_map<BlockIndex, std::uint32_t, IndexHash> slots_;
+  std::unordered_map<BlockIndex, std::uint32_t, BlockIndexHash> slots_;
   BlockTable table_;                          ///< holds the blocks, and is what readers get
   std::vector<Block*> blocks_;                ///< the same
   std::vector<std::uint64_t> written_since_;  ///< by slot: value of shares_ when the block was made or copied

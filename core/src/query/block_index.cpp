@@ -9,7 +9,7 @@ BlockIndexTable::BlockIndexTable(const BlockTable& blocks) : entries_(std::bit_c
   in_order_.reserve(blocks.size());
   for (const auto& block : blocks) {
     const BlockIndex& index = block->index();
-    std::size_t place = hash_of(index) & (entries_.size() - 1);
+    std::size_t place = BlockIndexHash{}(index) & (entries_.size() - 1);
     while (entries_[place].slot >= 0) place = (place + 1) & (entries_.size() - 1);
     entries_[place] = {index, static_cast<std::int32_t>(in_order_.size())};
     in_order_.push_back(index);

@@ -16,7 +16,7 @@ class BlockIndexTable {
 
   /// Slot of the block; -1: there is none.
   std::int32_t find(const BlockIndex& index) const {
-    std::size_t place = hash_of(index) & (entries_.size() - 1);
+    std::size_t place = BlockIndexHash{}(index) & (entries_.size() - 1);
     while (entries_[place].slot >= 0 && entries_[place].index != index) place = (place + 1) & (entries_.size() - 1);
     return entries_[place].slot;
   }
@@ -32,13 +32,6 @@ class BlockIndexTable {
     BlockIndex index = BlockIndex::Zero();
     std::int32_t slot = -1;
   };
-  static std::size_t hash_of(const BlockIndex& i) {
-    // Teschner et al., Optimized Spatial Hashing, 2003; mixed, since the low bits are taken.
-    std::uint64_t h = static_cast<std::uint32_t>(i.x()) * 73856093ULL ^
-                      static_cast<std::uint32_t>(i.y()) * 19349663ULL ^ static_cast<std::uint32_t>(i.z()) * 83492791ULL;
-    h = (h ^ h >> 29) * 0x9e3779b97f4a7c15ULL;
-    return static_cast<std::size_t>(h >> 32);
-  }
 
   std::vector<Entry> entries_;        ///< open addressing; a power of two, at most half full
   std::vector<BlockIndex> in_order_;  ///< by slot
