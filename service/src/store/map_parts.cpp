@@ -1,5 +1,7 @@
 #include "store/map_parts.hpp"
 
+#include <planemap/map_check.hpp>
+
 namespace planemap::service {
 
 FactRows read_facts(Database& database) {
@@ -9,7 +11,6 @@ FactRows read_facts(Database& database) {
   return facts;
 }
 
-/// What is left of the facts, for recover_map: as they are, though their checksum be wrong.
 void take_facts(const FactRows& rows, StoredMap& map, MapSnapshot::Parts& parts) {
   const Facts facts(rows);
   map.format = facts.whole<int>("format");
@@ -34,6 +35,12 @@ void take_facts(const FactRows& rows, StoredMap& map, MapSnapshot::Parts& parts)
     if (end == rest) throw Damage("meta: last_pose has too few numbers");
     rest = end;
   }
+}
+
+Expected<void> check_stored(const MapSnapshot& map) {
+  MapperConfig config;  // whose cells are right in any case
+  config.grid.cell_size_m = map.cell_size_m();
+  return check_map(config, map);
 }
 
 }  // namespace planemap::service

@@ -51,11 +51,13 @@ class Facts {
 };
 
 FactRows read_facts(Database& database);
-/// What the facts say; their checksum is not asked for. Throws Damage.
+/// Takes what the facts say, though their checksum be wrong: that is for the caller to ask. Throws Damage.
 void take_facts(const FactRows& rows, StoredMap& map, MapSnapshot::Parts& parts);
 
-/// Calls take(slot, block or the reason why there is none, checksum) for each row.
-/// Only of those from a slot on.
+/// Whether a mapper could go on with the map, of whatever configuration; the error says what is wrong with it.
+Expected<void> check_stored(const MapSnapshot& map);
+
+/// Calls take(slot, block or the reason why there is none, checksum) for each row from a slot on.
 template <class Take>
 void read_blocks(Database& database, std::int64_t from, Take&& take) {
   Statement rows =

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <planemap/map_check.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -70,10 +69,8 @@ ReadMap read_whole(Database& database) {
   expect_count(read.facts, "planes", parts.planes.size());
   expect_count(read.facts, "removed", parts.removed.size());
   if (facts.whole<std::uint64_t>("digest") != digest) throw Damage("rows are missing, or older than the others");
-  MapperConfig config;  // whose cells are right in any case: what is wrong with the map is asked here
-  config.grid.cell_size_m = parts.cell_size_m;
   read.map.snapshot = std::make_shared<const MapSnapshot>(std::move(parts));
-  if (auto good = check_map(config, *read.map.snapshot); !good) throw Damage(good.error().message);
+  if (auto good = check_stored(*read.map.snapshot); !good) throw Damage(good.error().message);
   return read;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <planemap/map_check.hpp>
 #include <utility>
 
 #include "store/map_parts.hpp"
@@ -136,10 +135,8 @@ StoreExpected<Recovered> recover_map(const std::filesystem::path& path) {
     mend(parts, recovered.lost_planes);
     if (parts.blocks.empty()) return failed("no block is whole");
     parts.state.next_plane_id = std::max(parts.state.next_plane_id, recovered.map.reserved_ids);
-    MapperConfig config;
-    config.grid.cell_size_m = parts.cell_size_m;
     recovered.map.snapshot = std::make_shared<const MapSnapshot>(std::move(parts));
-    if (auto good = check_map(config, *recovered.map.snapshot); !good) return failed(good.error().message);
+    if (auto good = check_stored(*recovered.map.snapshot); !good) return failed(good.error().message);
     return recovered;
   } catch (const std::exception& error) {
     return failed(error.what());
