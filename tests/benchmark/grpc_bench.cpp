@@ -10,14 +10,13 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <planemap/simulation/simulated_source.hpp>
-#include <planemap/sources/open_folder.hpp>
 #include <random>
 #include <thread>
 #include <vector>
 
 #include "bench_frames.hpp"
 #include "common/stopwatch.hpp"
+#include "frame_source.hpp"
 #include "mapping/mapping_service.hpp"
 #include "serve/grpc/grpc_server.hpp"
 
@@ -83,17 +82,8 @@ class Daemon {
 
  private:
   static std::vector<BenchFrame> read(const Arguments& arguments) {
-    std::unique_ptr<sources::FrameSource> source;
-    if (arguments.dataset.empty()) {
-      simulation::SimulationConfig scene;
-      scene.frames = arguments.frames;
-      source = std::make_unique<simulation::SimulatedSource>(scene);
-    } else {
-      auto folder = sources::open_folder(arguments.dataset);
-      if (!folder) throw std::runtime_error(folder.error().message);
-      source = std::move(*folder);
-    }
-    auto frames = read_frames(*source, static_cast<std::size_t>(arguments.frames), SensorConfig{});
+    const auto tour = static_cast<std::size_t>(arguments.frames);
+    auto frames = read_frames(*open_frames({.dataset = arguments.dataset}, tour), tour, SensorConfig{});
     if (frames.size() < 2) throw std::runtime_error("there are fewer than two frames");
     return frames;
   }

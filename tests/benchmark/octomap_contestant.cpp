@@ -1,7 +1,6 @@
-#include <octomap/octomap.h>
-
 #include "common/stopwatch.hpp"
 #include "contestant.hpp"
+#include "octomap_endpoints.hpp"
 
 namespace planemap::benchmark {
 
@@ -14,14 +13,7 @@ class OctomapEndpoints final : public Contestant {
 
   PartTimes take(const BenchFrame& frame) override {
     const Stopwatch whole;
-    keys_.clear();
-    for (std::size_t i = 0; i < frame.xyz_world_m.size(); i += 3) {
-      octomap::OcTreeKey key;
-      if (tree_.coordToKeyChecked(frame.xyz_world_m[i], frame.xyz_world_m[i + 1], frame.xyz_world_m[i + 2], key)) {
-        keys_.insert(key);
-      }
-    }
-    for (const octomap::OcTreeKey& key : keys_) tree_.updateNode(key, true, /*lazy_eval=*/true);
+    mark_endpoints(frame.xyz_world_m, keys_, tree_);
     tree_.updateInnerOccupancy();
     return {{"octomapEndpoints", whole.ms(), whole.own_ms()}};
   }

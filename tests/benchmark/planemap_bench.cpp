@@ -2,28 +2,24 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
-#include <planemap/simulation/simulated_source.hpp>
-#include <planemap/sources/open_folder.hpp>
+#include <stdexcept>
+#include <support/program.hpp>
 
 #include "bench_frames.hpp"
 #include "bench_plot.hpp"
 #include "bench_report.hpp"
 #include "common/machine.hpp"
 #include "contestant.hpp"
+#include "frame_source.hpp"
 
 namespace planemap::benchmark {
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kWrongUse = 2;
-
 struct Arguments {
-  std::string dataset;
-  std::uint64_t seed = 1;
+  FrameOptions from;
   std::size_t frames = 300;
   SimdTarget simd = SimdTarget::kAuto;
   bool alone = false;
@@ -32,9 +28,7 @@ struct Arguments {
 };
 
 void define_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--dataset", arguments.dataset, "frames of a 7-Scenes or TUM RGB-D folder; else a simulated apartment")
-      ->type_name("DIR");
-  app.add_option("--seed", arguments.seed, "of the simulated apartment")->capture_default_str();
+  define_frame_options(app, arguments.from);
   app.add_option("--frames", arguments.frames, "how many, at most")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -52,18 +46,6 @@ void define_options(CLI::App& app, Arguments& arguments) {
       "Each frame goes through all programs before the next one does, so that a slow moment of the machine hits them "
       "alike:\n"
       "compare ratios, not milliseconds. Exit codes: 0 done, 1 failed, 2 wrong use.");
-}
-
-std::unique_ptr<sources::FrameSource> open_source(const Arguments& arguments) {
-  if (arguments.dataset.empty()) {
-    simulation::SimulationConfig scene;
-    scene.seed = arguments.seed;
-    scene.frames = arguments.frames;
-    return std::make_unique<simulation::SimulatedSource>(scene);
-  }
-  auto source = sources::open_folder(arguments.dataset);
-  if (!source) throw std::runtime_error(source.error().message);
-  return std::move(*source);
 }
 
 std::vector<std::unique_ptr<Contestant>> contestants(const MapperConfig& config, bool alone) {
@@ -90,7 +72,7 @@ void measure(const Arguments& arguments) {
   config.core.simd = arguments.simd;
   if (!is_supported(arguments.simd))
     throw std::runtime_error("--simd: this machine does not have that instruction set");
-  const auto source = open_source(arguments);
+  const auto source = open_frames(arguments.from, arguments.frames);
   const std::vector<BenchFrame> frames = read_frames(*source, arguments.frames, config.sensor);
   if (frames.empty()) throw std::runtime_error("there is no frame to measure with");
   BenchReport report;
@@ -102,8 +84,9 @@ void measure(const Arguments& arguments) {
   }
   points /= frames.size();
   if (!arguments.svg.empty()) {
-    const std::string what = arguments.dataset.empty() ? "a rendered apartment"
-                                                       : std::filesystem::path(arguments.dataset).filename().string();
+    const std::string what = arguments.from.dataset.empty()
+                                 ? "a rendered apartment"
+                                 : std::filesystem::path(arguments.from.dataset).filename().string();
     draw_bench(report,
                std::to_string(frames.size()) + " frames of " + what +
                    "; planemap's bars: assign, normals, local and global planes, wear, snapshot",
@@ -119,28 +102,14 @@ void measure(const Arguments& arguments) {
               versions.octomap.c_str(), frames.size(), points, report.table().c_str(), report.bounds_table().c_str());
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("planemap-bench: the time that planemap takes for a scan, by stage, beside its peers", "planemap-bench");
-  Arguments arguments;
-  define_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kWrongUse;
-  }
-  measure(arguments);
-  return kDone;
-}
-
 }  // namespace
 
 }  // namespace planemap::benchmark
 
 int main(int argc, char** argv) {
-  try {
-    return planemap::benchmark::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "planemap-bench: %s\n", e.what());
-    return 1;
-  }
+  using namespace planemap::benchmark;
+  CLI::App app("planemap-bench: the time that planemap takes for a scan, by stage, beside its peers", "planemap-bench");
+  Arguments arguments;
+  define_options(app, arguments);
+  return planemap::run_program(app, argc, argv, [&] { measure(arguments); });
 }

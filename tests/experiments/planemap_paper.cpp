@@ -4,12 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <functional>
 #include <memory>
 #include <planemap/simulation/simulated_source.hpp>
 #include <planemap/sources/open_folder.hpp>
 #include <set>
+#include <stdexcept>
+#include <support/program.hpp>
 
 #include "figures/figures.hpp"
 #include "real/scene_run.hpp"
@@ -18,8 +19,6 @@ namespace planemap::experiments {
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kWrongUse = 2;
 constexpr std::size_t kApartmentFrames = 300;
 // What RANSAC gets of the accumulated cloud: one mean point a cube. An apartment has five times the surface of a
 // kitchen.
@@ -178,29 +177,15 @@ void draw_all(const Arguments& arguments) {
   report.finish();
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("planemap-paper: the experiments of the paper, figures as SVG, numbers beside the paper's",
-               "planemap-paper");
-  Arguments arguments;
-  define_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kWrongUse;
-  }
-  draw_all(arguments);
-  return kDone;
-}
-
 }  // namespace
 
 }  // namespace planemap::experiments
 
 int main(int argc, char** argv) {
-  try {
-    return planemap::experiments::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "planemap-paper: %s\n", e.what());
-    return 1;
-  }
+  using namespace planemap::experiments;
+  CLI::App app("planemap-paper: the experiments of the paper, figures as SVG, numbers beside the paper's",
+               "planemap-paper");
+  Arguments arguments;
+  define_options(app, arguments);
+  return planemap::run_program(app, argc, argv, [&] { draw_all(arguments); });
 }

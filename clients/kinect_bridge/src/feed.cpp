@@ -12,6 +12,8 @@ std::int64_t wall_utime() {
   return std::chrono::duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+}  // namespace
+
 Eigen::Isometry3d interpolated(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double share) {
   Eigen::Isometry3d between = Eigen::Isometry3d::Identity();
   const Eigen::Quaterniond rotation(from.linear());
@@ -19,8 +21,6 @@ Eigen::Isometry3d interpolated(const Eigen::Isometry3d& from, const Eigen::Isome
   between.translation() = (1.0 - share) * from.translation() + share * to.translation();
   return between;
 }
-
-}  // namespace
 
 Feed::Feed(sources::FrameSource& source, Sink& sink, const FeedOptions& options, WaitUntil wait)
     : source_(source), sink_(sink), options_(options), wait_(std::move(wait)) {}

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -39,6 +40,9 @@ struct FeedReport {
   PinholeIntrinsics intrinsics;  ///< of the last frame
   bool stopped = false;          ///< before the source's end
 };
+
+/// The pose at a share, 0 to 1, of the way between two; the rotation by slerp.
+Eigen::Isometry3d interpolated(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double share);
 
 /// Waits until a time; true: stop.
 using WaitUntil = std::function<bool(std::chrono::steady_clock::time_point)>;

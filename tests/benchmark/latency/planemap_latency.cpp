@@ -3,18 +3,17 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <harness/network.hpp>
-#include <memory>
-#include <planemap/simulation/simulated_source.hpp>
-#include <planemap/sources/open_folder.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
+#include <support/program.hpp>
 
 #include "common/machine.hpp"
+#include "frame_source.hpp"
 #include "latency/latency_report.hpp"
 #include "latency/latency_run.hpp"
 
@@ -22,13 +21,9 @@ namespace planemap::benchmark {
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kWrongUse = 2;
-
 struct Arguments {
   LatencyConfig latency;
-  std::string dataset;
-  std::uint64_t seed = 1;
+  FrameOptions from;
   std::size_t frames = 300;
   double seconds = 30.0;
   std::string planemapd = PLANEMAP_BIN_DIR "/planemapd";
@@ -36,9 +31,7 @@ struct Arguments {
 };
 
 void define_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--dataset", arguments.dataset, "frames of a 7-Scenes or TUM RGB-D folder; else a simulated apartment")
-      ->type_name("DIR");
-  app.add_option("--seed", arguments.seed, "of the simulated apartment")->capture_default_str();
+  define_frame_options(app, arguments.from);
   app.add_option("--frames", arguments.frames, "how many, at most; they go forth and back")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();
@@ -65,27 +58,6 @@ void define_options(CLI::App& app, Arguments& arguments) {
       "is not before\nits own. Exit codes: 0 done, whether or not the bounds are held; 1 failed, 2 wrong use.");
 }
 
-std::vector<sources::Frame> read_frames(const Arguments& arguments) {
-  std::unique_ptr<sources::FrameSource> source;
-  if (arguments.dataset.empty()) {
-    simulation::SimulationConfig scene;  // at a robot's own speed
-    scene.seed = arguments.seed;
-    source = std::make_unique<simulation::SimulatedSource>(scene);
-  } else {
-    auto folder = sources::open_folder(arguments.dataset);
-    if (!folder) throw std::runtime_error(folder.error().message);
-    source = std::move(*folder);
-  }
-  std::vector<sources::Frame> frames;
-  frames.reserve(arguments.frames);
-  while (frames.size() < arguments.frames) {
-    auto frame = source->next();
-    if (!frame) break;
-    frames.push_back(std::move(*frame));
-  }
-  return frames;
-}
-
 /// Leaves one core to the daemon and keeps to the others, where there are any.
 /// @return the daemon's
 int share_cores() {
@@ -108,7 +80,7 @@ void measure(Arguments& arguments) {
   const std::string problem = system_test::enter_own_network();
   if (!problem.empty()) throw std::runtime_error(problem);
   system_test::add_multicast_route();
-  const auto frames = read_frames(arguments);
+  const auto frames = read_frames(*open_frames(arguments.from, std::nullopt), arguments.frames);
   arguments.latency.url = system_test::kLcmUrl;
   arguments.latency.scans =
       static_cast<std::size_t>(std::max(1.0, std::round(arguments.seconds * arguments.latency.rate_hz)));
@@ -122,28 +94,14 @@ void measure(Arguments& arguments) {
   }
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("planemap-latency: from a scan and its pose on the bus to the delta on the bus", "planemap-latency");
-  Arguments arguments;
-  define_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kWrongUse;
-  }
-  measure(arguments);
-  return kDone;
-}
-
 }  // namespace
 
 }  // namespace planemap::benchmark
 
 int main(int argc, char** argv) {
-  try {
-    return planemap::benchmark::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "planemap-latency: %s\n", e.what());
-    return 1;
-  }
+  using namespace planemap::benchmark;
+  CLI::App app("planemap-latency: from a scan and its pose on the bus to the delta on the bus", "planemap-latency");
+  Arguments arguments;
+  define_options(app, arguments);
+  return planemap::run_program(app, argc, argv, [&] { measure(arguments); });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "feed.hpp"
 #include "wire.hpp"
 
 namespace planemap::benchmark {
@@ -15,13 +16,6 @@ using std::chrono::steady_clock;
 // Where the first scan lies between two poses, as a share of the poses' period: at 30 and 100 Hz no scan has the time
 // of a pose, and they wait for 8.3, 5 and 1.7 ms in turn.
 constexpr double kPhase = 1.0 / 6.0;
-
-Eigen::Isometry3d between(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double share) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.linear() = Eigen::Quaterniond(from.linear()).slerp(share, Eigen::Quaterniond(to.linear())).toRotationMatrix();
-  result.translation() = (1.0 - share) * from.translation() + share * to.translation();
-  return result;
-}
 
 std::int64_t utime_now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -99,7 +93,9 @@ void Sender::send_pose(double after_s, std::int64_t utime) {
   const double place = std::max(0.0, after_s / period_s_);
   const auto i = static_cast<std::size_t>(place);
   const auto pose = kinect_bridge::to_message(
-      between(T_world_sensor_[frame_of(i)], T_world_sensor_[frame_of(i + 1)], place - static_cast<double>(i)), utime);
+      kinect_bridge::interpolated(T_world_sensor_[frame_of(i)], T_world_sensor_[frame_of(i + 1)],
+                                  place - static_cast<double>(i)),
+      utime);
   lcm_.publish("POSE", &pose);
 }
 

@@ -1,8 +1,9 @@
 // planemap-scale: what a scan costs as the map grows, in a building without end.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <map>
+#include <stdexcept>
+#include <support/program.hpp>
 
 #include "common/machine.hpp"
 #include "scale/scale_report.hpp"
@@ -11,9 +12,6 @@
 namespace planemap::benchmark {
 
 namespace {
-
-constexpr int kDone = 0;
-constexpr int kWrongUse = 2;
 
 struct Arguments {
   ScaleConfig scale;
@@ -77,28 +75,14 @@ void measure(Arguments& arguments) {
   if (!arguments.svg.empty()) draw_scale(windows, arguments.svg);
 }
 
-int run(int argc, char** argv) {
-  CLI::App app("planemap-scale: what a scan costs as the map grows", "planemap-scale");
-  Arguments arguments;
-  define_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kWrongUse;
-  }
-  measure(arguments);
-  return kDone;
-}
-
 }  // namespace
 
 }  // namespace planemap::benchmark
 
 int main(int argc, char** argv) {
-  try {
-    return planemap::benchmark::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "planemap-scale: %s\n", e.what());
-    return 1;
-  }
+  using namespace planemap::benchmark;
+  CLI::App app("planemap-scale: what a scan costs as the map grows", "planemap-scale");
+  Arguments arguments;
+  define_options(app, arguments);
+  return planemap::run_program(app, argc, argv, [&] { measure(arguments); });
 }

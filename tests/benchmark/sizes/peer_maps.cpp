@@ -4,12 +4,15 @@
 
 #include <sstream>
 
+#include "octomap_endpoints.hpp"
+
 namespace planemap::benchmark {
 
 struct PeerMaps::Impl {
   explicit Impl(double resolution_m) : rays(resolution_m), endpoints(resolution_m) {}
   octomap::OcTree rays;
   octomap::OcTree endpoints;
+  octomap::KeySet keys;
 };
 
 namespace {
@@ -29,14 +32,11 @@ PeerMaps::~PeerMaps() = default;
 void PeerMaps::add(const BenchFrame& frame) {
   octomap::Pointcloud cloud;
   cloud.reserve(frame.xyz_world_m.size() / 3);
-  octomap::KeySet keys;
   for (std::size_t i = 0; i + 2 < frame.xyz_world_m.size(); i += 3) {
     const float* p = &frame.xyz_world_m[i];
     cloud.push_back(p[0], p[1], p[2]);
-    octomap::OcTreeKey key;
-    if (impl_->endpoints.coordToKeyChecked(p[0], p[1], p[2], key)) keys.insert(key);
   }
-  for (const octomap::OcTreeKey& key : keys) impl_->endpoints.updateNode(key, true, /*lazy_eval=*/true);
+  mark_endpoints(frame.xyz_world_m, impl_->keys, impl_->endpoints);
   const Eigen::Vector3f origin = frame.T_world_sensor.translation().cast<float>();
   impl_->rays.insertPointCloud(cloud, octomap::point3d(origin.x(), origin.y(), origin.z()), /*maxrange=*/-1.0,
                                /*lazy_eval=*/true, /*discretize=*/true);

@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <planemap/mapper.hpp>
-#include <planemap/simulation/simulated_source.hpp>
-#include <planemap/sources/open_folder.hpp>
 #include <planemap_lcm/request_t.hpp>
 #include <stdexcept>
+#include <support/program.hpp>
 
 #include "bench_frames.hpp"
+#include "frame_source.hpp"
 #include "serve/lcm/request_answerer.hpp"
 #include "sizes/peer_maps.hpp"
 
@@ -19,24 +19,11 @@ namespace planemap::benchmark {
 namespace {
 
 struct Arguments {
-  std::string dataset;
-  std::uint64_t seed = 1;
+  FrameOptions from;
   std::size_t frames = 300;
   std::optional<double> resolution_m;
   bool json = false;
 };
-
-std::unique_ptr<sources::FrameSource> open_source(const Arguments& arguments) {
-  if (arguments.dataset.empty()) {
-    simulation::SimulationConfig scene;
-    scene.seed = arguments.seed;
-    scene.frames = arguments.frames;
-    return std::make_unique<simulation::SimulatedSource>(scene);
-  }
-  auto source = sources::open_folder(arguments.dataset);
-  if (!source) throw std::runtime_error(source.error().message);
-  return std::move(*source);
-}
 
 /// A reply over LCM: bytes and pages.
 struct WireSize {
@@ -63,7 +50,7 @@ WireSize wire_size(std::int16_t operation, const std::shared_ptr<const MapSnapsh
 void measure(const Arguments& arguments) {
   service::ServiceConfig config;
   config.mapper = preset(Preset::kBest);
-  const auto source = open_source(arguments);
+  const auto source = open_frames(arguments.from, arguments.frames);
   if (const auto g = source->gravity_direction()) config.map.gravity = {g->x(), g->y(), g->z()};
   const double cell_m = config.mapper.grid.cell_size_m;
   Mapper mapper(config.mapper, /*epoch=*/1);
@@ -114,14 +101,8 @@ void measure(const Arguments& arguments) {
   std::fputs(text.c_str(), stdout);
 }
 
-int run(int argc, char** argv) {
-  CLI::App app(
-      "planemap-map-sizes: bytes of a map over LCM, beside OctoMap's files and a voxel cloud of the same scans",
-      "planemap-map-sizes");
-  Arguments arguments;
-  app.add_option("--dataset", arguments.dataset, "frames of a 7-Scenes or TUM RGB-D folder; else a simulated apartment")
-      ->type_name("DIR");
-  app.add_option("--seed", arguments.seed, "of the simulated apartment")->capture_default_str();
+void define_options(CLI::App& app, Arguments& arguments) {
+  define_frame_options(app, arguments.from);
   app.add_option("--frames", arguments.frames, "how many, at most")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -129,23 +110,17 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(0.005, 1.0));
   app.add_flag("--json", arguments.json, "one object instead of the table");
   app.footer("Exit codes: 0 done, 1 failed, 2 wrong use.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
-  measure(arguments);
-  return 0;
 }
 
 }  // namespace
 }  // namespace planemap::benchmark
 
 int main(int argc, char** argv) {
-  try {
-    return planemap::benchmark::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "planemap-map-sizes: %s\n", error.what());
-    return 1;
-  }
+  using namespace planemap::benchmark;
+  CLI::App app(
+      "planemap-map-sizes: bytes of a map over LCM, beside OctoMap's files and a voxel cloud of the same scans",
+      "planemap-map-sizes");
+  Arguments arguments;
+  define_options(app, arguments);
+  return planemap::run_program(app, argc, argv, [&] { measure(arguments); });
 }

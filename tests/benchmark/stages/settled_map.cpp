@@ -1,10 +1,11 @@
 #include "stages/settled_map.hpp"
 
 #include <cstdlib>
-#include <planemap/simulation/simulated_source.hpp>
-#include <planemap/sources/open_folder.hpp>
 #include <stdexcept>
+#include <string>
 #include <utility>
+
+#include "frame_source.hpp"
 
 namespace planemap::benchmark {
 
@@ -12,30 +13,15 @@ namespace {
 
 constexpr std::int64_t kPeriodUs = 33'333;
 
-std::vector<sources::Frame> all_of(sources::FrameSource& source, std::size_t most) {
-  std::vector<sources::Frame> frames;
-  frames.reserve(most);
-  while (frames.size() < most) {
-    auto frame = source.next();
-    if (!frame) break;
-    frames.push_back(std::move(*frame));
-  }
-  if (frames.empty()) throw std::runtime_error("there is no frame to measure with");
-  return frames;
-}
-
 }  // namespace
 
 StageFrames read_stage_frames(std::size_t most) {
-  if (const char* data = std::getenv("PLANEMAP_TEST_DATA")) {
-    auto kitchen = sources::open_folder(std::string(data) + "/redkitchen");
-    if (!kitchen) throw std::runtime_error(kitchen.error().message);
-    return {all_of(**kitchen, most), "red kitchen"};
-  }
-  simulation::SimulationConfig apartment;
-  apartment.frames = most;
-  simulation::SimulatedSource source(apartment);
-  return {all_of(source, most), "rendered apartment"};
+  const char* data = std::getenv("PLANEMAP_TEST_DATA");
+  const std::string kitchen = data != nullptr ? std::string(data) + "/redkitchen" : "";
+  StageFrames stage{read_frames(*open_frames({.dataset = kitchen}, most), most),
+                    data != nullptr ? "red kitchen" : "rendered apartment"};
+  if (stage.frames.empty()) throw std::runtime_error("there is no frame to measure with");
+  return stage;
 }
 
 SettledMap::SettledMap(const MapperConfig& config, const std::vector<sources::Frame>& frames)
