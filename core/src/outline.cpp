@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <boost/geometry/algorithms/area.hpp>
 #include <boost/geometry/algorithms/correct.hpp>
 #include <boost/geometry/algorithms/is_valid.hpp>
@@ -14,6 +15,8 @@
 #include <boost/polygon/polygon.hpp>
 #include <cmath>
 #include <complex>
+
+#include "square_cover.hpp"
 
 namespace planemap {
 namespace {
@@ -49,11 +52,15 @@ constexpr double kStaircaseRad = 0.02;  // below it a border of a few metres has
 std::vector<RasterPolygon> union_of(std::span<const Eigen::Vector2d> uv_m, double step_m) {
   // Growing a union of squares is the union of grown squares.
   constexpr int kReach = kHalfCell + kClosing;
-  RasterSet set;
+  std::vector<std::array<int, 2>> centres;
+  centres.reserve(uv_m.size());
   for (const Eigen::Vector2d& centre : uv_m) {
-    const int u = static_cast<int>(std::lround(centre.x() / step_m));
-    const int v = static_cast<int>(std::lround(centre.y() / step_m));
-    set.insert(bp::rectangle_data<int>(u - kReach, v - kReach, u + kReach, v + kReach));
+    centres.push_back(
+        {static_cast<int>(std::lround(centre.x() / step_m)), static_cast<int>(std::lround(centre.y() / step_m))});
+  }
+  RasterSet set;
+  for (const RasterRectangle& cover : square_cover(centres, kReach)) {
+    set.insert(bp::rectangle_data<int>(cover.left, cover.bottom, cover.right, cover.top));
   }
   constexpr int kShrink = kClosing + kInset;
   set.shrink(kShrink, kShrink, kShrink, kShrink);
