@@ -47,26 +47,39 @@ constexpr double kSimplifyCells = 0.25;
 constexpr double kDirectionCells = 1.5;
 constexpr double kStaircaseRad = 0.02;  // below it a border of a few metres has but one or two steps
 
-/// The closed and inset union of the cells' squares.
-/// @param uv_m  centres on the plane, in the axes along which the squares lie
-std::vector<RasterPolygon> union_of(std::span<const Eigen::Vector2d> uv_m, double step_m) {
-  // Growing a union of squares is the union of grown squares.
-  constexpr int kReach = kHalfCell + kClosing;
-  std::vector<std::array<int, 2>> centres;
-  centres.reserve(uv_m.size());
-  for (const Eigen::Vector2d& centre : uv_m) {
-    centres.push_back(
-        {static_cast<int>(std::lround(centre.x() / step_m)), static_cast<int>(std::lround(centre.y() / step_m))});
+using RasterPoints = std::vector<std::array<int, 2>>;
+
+/// @param uv_m  points on the plane, in the axes of the raster
+RasterPoints raster_of(std::span<const Eigen::Vector2d> uv_m, double step_m) {
+  RasterPoints points;
+  points.reserve(uv_m.size());
+  for (const Eigen::Vector2d& uv : uv_m) {
+    points.push_back({static_cast<int>(std::lround(uv.x() / step_m)), static_cast<int>(std::lround(uv.y() / step_m))});
   }
+  return points;
+}
+
+/// The union of rectangles, each grown by `grown` steps on all sides, and the union then shrunk.
+std::vector<RasterPolygon> union_of(std::span<const RasterRectangle> rectangles, int grown, int shrunk) {
   RasterSet set;
-  for (const RasterRectangle& cover : square_cover(centres, kReach)) {
-    set.insert(bp::rectangle_data<int>(cover.left, cover.bottom, cover.right, cover.top));
+  for (const RasterRectangle& r : rectangles) {
+    set.insert(bp::rectangle_data<int>(r.left - grown, r.bottom - grown, r.right + grown, r.top + grown));
   }
-  constexpr int kShrink = kClosing + kInset;
-  set.shrink(kShrink, kShrink, kShrink, kShrink);
+  if (shrunk > 0) set.shrink(shrunk, shrunk, shrunk, shrunk);
   std::vector<RasterPolygon> polygons;
   set.get(polygons);
   return polygons;
+}
+
+/// The closed and inset union of the cells' squares. Growing a union of squares is the union of grown squares.
+std::vector<RasterPolygon> closed_squares(const RasterPoints& centres) {
+  return union_of(square_cover(centres, kHalfCell + kClosing), 0, kClosing + kInset);
+}
+
+/// About the same, from bins of a cell's size instead of squares about the centres: good for the direction of the
+/// border, in a tenth of the time.
+std::vector<RasterPolygon> rough_squares(const RasterPoints& centres) {
+  return union_of(occupied_rows(centres, kStepsPerCell), kClosing, 0);
 }
 
 /// Appends a Boost.Polygon ring to a Boost.Geometry one and closes it.
@@ -156,17 +169,16 @@ Outline outline_of(const Plane& plane, const Eigen::Vector3d& centroid_m,
   std::vector<Eigen::Vector2d> uv_m;
   uv_m.reserve(cell_centres_m.size());
   for (const Eigen::Vector3d& centre_m : cell_centres_m) uv_m.push_back(outline.basis.to_plane(centre_m));
-  std::vector<GeoPolygon> polygons = polygons_of(union_of(uv_m, step_m), step_m);
 
-  // A border that runs at an angle to the squares becomes a staircase: lay the squares along it and do it again.
+  // A border that runs at an angle to the squares would become a staircase: lay the squares along it.
   Eigen::Rotation2Dd R_plane_raster = Eigen::Rotation2Dd::Identity();
-  const double direction_rad = main_direction_rad(polygons, kDirectionCells * cell_size_m);
+  const double direction_rad =
+      main_direction_rad(polygons_of(rough_squares(raster_of(uv_m, step_m)), step_m), kDirectionCells * cell_size_m);
   if (std::abs(direction_rad) > kStaircaseRad) {
     R_plane_raster.angle() = direction_rad;
     for (Eigen::Vector2d& centre : uv_m) centre = R_plane_raster.inverse() * centre;
-    polygons = polygons_of(union_of(uv_m, step_m), step_m);
   }
-
+  std::vector<GeoPolygon> polygons = polygons_of(closed_squares(raster_of(uv_m, step_m)), step_m);
   std::stable_sort(polygons.begin(), polygons.end(),
                    [](const GeoPolygon& a, const GeoPolygon& b) { return bg::area(a) > bg::area(b); });
   for (const GeoPolygon& detailed : polygons) {

@@ -52,16 +52,24 @@ bool is_covered(const std::vector<Run>& runs, int row, int first, int last) {
   return run.row == row && run.last >= last;
 }
 
+std::vector<RasterRectangle> rectangles_of(const std::vector<Run>& runs, int bin_size) {
+  std::vector<RasterRectangle> rectangles;
+  rectangles.reserve(runs.size());
+  for (const auto& [row, first, last] : runs) {
+    rectangles.push_back({first * bin_size, row * bin_size, (last + 1) * bin_size, (row + 1) * bin_size});
+  }
+  return rectangles;
+}
+
 }  // namespace
+
+std::vector<RasterRectangle> occupied_rows(std::span<const std::array<int, 2>> points, int bin_size) {
+  return rectangles_of(runs_of(points, bin_size), bin_size);
+}
 
 std::vector<RasterRectangle> square_cover(std::span<const std::array<int, 2>> centres, int half_size) {
   const std::vector<Run> runs = runs_of(centres, half_size);
-  std::vector<RasterRectangle> rectangles;
-  rectangles.reserve(runs.size() + centres.size());
-  for (const Run& run : runs) {
-    rectangles.push_back(
-        {run.first * half_size, run.row * half_size, (run.last + 1) * half_size, (run.row + 1) * half_size});
-  }
+  std::vector<RasterRectangle> rectangles = rectangles_of(runs, half_size);
   for (const auto& centre : centres) {
     const auto [row, column] = bin_of(centre, half_size);
     bool inside = true;

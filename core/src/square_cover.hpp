@@ -20,4 +20,8 @@ struct RasterRectangle {
 /// @param centres  raster steps; any order, duplicates allowed
 std::vector<RasterRectangle> square_cover(std::span<const std::array<int, 2>> centres, int half_size);
 
+/// The bins of a raster that hold a point, as one rectangle to each unbroken row of them.
+/// @param points  raster steps
+std::vector<RasterRectangle> occupied_rows(std::span<const std::array<int, 2>> points, int bin_size);
+
 }  // namespace planemap

@@ -65,5 +65,16 @@ TEST(SquareCover, AFullRectangleCostsItsBorder) {
   EXPECT_EQ(union_of_cover(centres, kHalfSize), union_of_squares(centres, kHalfSize));
 }
 
+TEST(OccupiedRows, AreUnbrokenRowsOfBins) {
+  // Columns 0, 1 and 3 of row 0; column -1 of row -1.
+  const Centres points{{50, 3}, {0, 0}, {31, 15}, {2, 9}, {-1, -16}};
+  const auto rows = occupied_rows(points, 16);
+  ASSERT_EQ(rows.size(), 3u);
+  const auto as_array = [](const RasterRectangle& r) { return std::array{r.left, r.bottom, r.right, r.top}; };
+  EXPECT_EQ(as_array(rows[0]), (std::array{-16, -16, 0, 0}));
+  EXPECT_EQ(as_array(rows[1]), (std::array{0, 0, 32, 16}));
+  EXPECT_EQ(as_array(rows[2]), (std::array{48, 0, 64, 16}));
+}
+
 }  // namespace
 }  // namespace planemap
