@@ -106,7 +106,7 @@ struct PublishConfig {
   double point_cloud_period_s = 1.0;  ///< least time between two of them
   int point_cloud_points = 4000;      ///< of one at most
   double status_period_s = 1.0;
-  double delta_period_s = 0.2;  ///< least time between two deltas
+  double delta_period_s = 0.02;  ///< least time between two deltas: at 30 Hz each scan has its own
   int page_bytes = 60000;
   double page_pause_s = 0.0005;  ///< between two pages, so that receivers keep up
   int kept_replies = 8;          ///< replies kept for lost pages

@@ -96,7 +96,6 @@ std::vector<std::string> command_of(const LatencyConfig& config) {
   set("publish.status_period_s=0.1");
   set("grpc.listen=");
   set("pose.exact_s=0");  // a pose is only before or after a scan, so it is known which one the daemon waits for
-  if (config.delta_period_s > 0.0) set("publish.delta_period_s=" + std::to_string(config.delta_period_s));
   for (const std::string& setting : config.settings) set(setting);
   return command;
 }

@@ -16,7 +16,6 @@ struct LatencyConfig {
   double pose_rate_hz = 100.0;
   std::size_t scans = 900;            ///< to send; the frames forth and back, as often as it takes
   bool compressed = false;            ///< zlib instead of raw
-  double delta_period_s = 0.01;       ///< publish.delta_period_s of the daemon; 0: its own default
   std::vector<std::string> daemon;    ///< command that starts planemapd, without the options of the run
   std::string url;                    ///< of LCM
   std::vector<std::string> settings;  ///< further KEY=VALUE for the daemon

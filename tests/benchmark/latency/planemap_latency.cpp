@@ -45,10 +45,6 @@ void define_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1.0, 10000.0))
       ->capture_default_str();
   app.add_flag("--zlib", arguments.latency.compressed, "compressed scans instead of raw ones");
-  app.add_option("--delta-period", arguments.latency.delta_period_s,
-                 "publish.delta_period_s of the daemon; 0: its default")
-      ->check(CLI::Range(0.0, 60.0))
-      ->capture_default_str();
   app.add_option("--set", arguments.latency.settings, "a further setting of the daemon")->type_name("KEY=VALUE");
   app.add_option("--planemapd", arguments.planemapd, "the daemon's program")->type_name("FILE")->capture_default_str();
   app.add_flag("--json", arguments.json, "one object instead of the table");
