@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "map_addition.hpp"
 #include "planemap/assignment.hpp"
 #include "planemap/cell_normals.hpp"
 #include "planemap/local_planes.hpp"
@@ -94,6 +95,32 @@ class Mapper::Impl {
     if (report.planes_changed) ++revision_;
     return report;
   }
+
+  AdditionReport add(const MapSnapshot& other, const std::optional<Eigen::Isometry3d>& T_ours_theirs,
+                     const std::function<void(double)>& progress) {
+    utime_ = std::max(utime_, other.utime());
+    MapAddition addition(other, T_ours_theirs);
+    addition.add_cells(grid_, planes_);
+    AdditionReport report{other.cell_count(), 0, 0};
+    std::vector<CellChange>& changes = assigner_.changes();
+    for (std::size_t batch = 0; batch < addition.batch_count(); ++batch) {
+      addition.begin_batch(batch, grid_, changes);
+      for (const CellChange& change : changes) planes_.detach(grid_, change.cell);
+      fit_normals(nullptr);
+      const auto local = local_.extract(grid_, changes, neighbourhoods_);
+      const GlobalReport global =
+          planes_.merge(grid_, local, changes, neighbourhoods_, addition.pose_of(grid_, changes));
+      report.new_planes += global.new_planes;
+      report.merged_planes += global.merged_planes;
+      assigner_.finish(grid_);
+      if (progress) progress(static_cast<double>(batch + 1) / static_cast<double>(addition.batch_count()));
+    }
+    addition.note_times(grid_, planes_);
+    if (planes_.changed()) ++revision_;
+    return report;
+  }
+
+  const MapperConfig& config() const { return config_; }
 
   std::shared_ptr<const MapSnapshot> snapshot(StageObserver* observer) {
     const StageScope scope(observer, Stage::kSnapshot);
@@ -229,6 +256,12 @@ Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 ScanReport Mapper::integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer,
                              const std::optional<PoseCovariance>& pose_covariance) {
   return impl_->integrate(scan, ScanPose{T_world_sensor, utime_of(scan), pose_covariance}, observer);
+}
+
+Expected<AdditionReport> Mapper::add(const MapSnapshot& other, const std::optional<Eigen::Isometry3d>& T_ours_theirs,
+                                     const std::function<void(double)>& progress) {
+  if (auto whole = check_map(impl_->config(), other); !whole) return tl::make_unexpected(whole.error());
+  return impl_->add(other, T_ours_theirs, progress);
 }
 
 std::shared_ptr<const MapSnapshot> Mapper::snapshot(StageObserver* observer) {

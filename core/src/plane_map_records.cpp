@@ -32,6 +32,13 @@ void PlaneMap::write_record(PlaneSlot slot, std::uint64_t revision, PlaneRecord&
   record.state = kept;
 }
 
+void PlaneMap::note_seen(PlaneSlot slot, std::int64_t first_seen_utime) {
+  State& plane = state(slot);
+  if (first_seen_utime >= plane.first_seen_utime) return;
+  plane.first_seen_utime = first_seen_utime;
+  if (!std::exchange(plane.dirty, true)) dirty_.push_back(slot);
+}
+
 MapperState PlaneMap::state() const {
   return {states_.size(), last_pose_, poses_err_, pose_variance_m2_, scans_};
 }

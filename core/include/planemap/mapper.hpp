@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <planemap/config.hpp>
@@ -41,6 +42,13 @@ struct ScanReport {
   bool planes_changed = false;  ///< the revision grew
 };
 
+/// What became of another map that was added.
+struct AdditionReport {
+  std::size_t added_cells = 0;    ///< of the other map
+  std::size_t new_planes = 0;     ///< that began, the merged ones included
+  std::size_t merged_planes = 0;  ///< that became part of others
+};
+
 /// The whole method: scans with poses in, snapshots out. Not thread-safe: one thread owns it. Deterministic: the same
 /// configuration and the same calls give the same map.
 class Mapper {
@@ -65,6 +73,18 @@ class Mapper {
   /// @param pose_covariance  of T_world_sensor, positive semi-definite; empty: config.pose_error
   ScanReport integrate(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, StageObserver* observer = nullptr,
                        const std::optional<PoseCovariance>& pose_covariance = std::nullopt);
+
+  /// Adds all that another map has seen: the sums of cells add up, and planes go through the same steps as those of
+  /// scans. Without a transform the sums are those of a map that saw the scans of both, to rounding, in whatever order
+  /// maps are added, as far as the same scans assign their points to the same cells. The other map's planes keep
+  /// neither ids nor extents: they are found anew in the cells. How far the errors of its poses are shared by its
+  /// scans is not kept in cells: where poses err, its evidence counts as seen with the error of its last pose.
+  /// @param T_ours_theirs  from the other map's frame to ours; empty: they are the same
+  /// @param progress       called now and then with the share that is done, 0 to 1; may be empty
+  /// @return fails if the other map is not whole (restore()), or its cells are of another size; nothing was added then
+  Expected<AdditionReport> add(const MapSnapshot& other,
+                               const std::optional<Eigen::Isometry3d>& T_ours_theirs = std::nullopt,
+                               const std::function<void(double)>& progress = {});
 
   /// The map as it is now; costs what changed since the last call.
   std::shared_ptr<const MapSnapshot> snapshot(StageObserver* observer = nullptr);

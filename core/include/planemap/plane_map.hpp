@@ -69,6 +69,9 @@ class PlaneMap {
   /// less than what starts one is gone.
   void wear_away(UncertainGrid& grid, std::span<const CellRef> cells);
 
+  /// A plane was seen as early as that, by somebody else.
+  void note_seen(PlaneSlot slot, std::int64_t first_seen_utime);
+
   /// What it knows beside its planes.
   MapperState state() const;
   /// Goes on with the planes of another one. @pre it has none yet; cells and records were checked (check_map)
