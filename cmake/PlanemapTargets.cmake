@@ -8,8 +8,16 @@ if(PLANEMAP_SANITIZER STREQUAL "address")
 elseif(PLANEMAP_SANITIZER STREQUAL "thread")
   add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)
   add_link_options(-fsanitize=thread)
+elseif(PLANEMAP_SANITIZER STREQUAL "fuzzer")
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "PLANEMAP_SANITIZER=fuzzer needs clang++: cmake --preset fuzz")
+  endif()
+  # Every object counts its edges; the fuzz targets alone link libFuzzer and its main(). Overflow of unsigned numbers is no error.
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all
+                      -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
 elseif(PLANEMAP_SANITIZER)
-  message(FATAL_ERROR "PLANEMAP_SANITIZER is '${PLANEMAP_SANITIZER}'; it takes 'address' or 'thread'")
+  message(FATAL_ERROR "PLANEMAP_SANITIZER is '${PLANEMAP_SANITIZER}'; it takes 'address', 'thread' or 'fuzzer'")
 endif()
 
 find_program(PLANEMAP_CCACHE ccache)

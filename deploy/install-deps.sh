@@ -60,11 +60,13 @@ readonly BUILD_PACKAGES=(
   zlib1g-dev
 )
 readonly TEST_PACKAGES=(
+  clang               # the fuzz targets
   clang-format
   clang-tidy
   git                 # CI asks it which files are the project's
   iproute2
   jq
+  libclang-rt-14-dev  # libFuzzer and the sanitizers of clang
   libbenchmark-dev    # planemap-query-bench, planemap-stage-bench
   libgmock-dev
   libgtest-dev

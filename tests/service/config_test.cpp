@@ -195,6 +195,12 @@ TEST(Config, SaysWhatIsWrongWithEachKindOfValue) {
   }
 }
 
+TEST(Config, AStrayCommaEnds) {  // yaml-cpp's LoadAll() never does
+  for (const std::string& text : {std::string("\0\0\0,\0", 5), std::string(","), std::string("a: 1\n,\n")}) {
+    (void)problems_of(text);
+  }
+}
+
 TEST(Config, BrokenYamlIsAProblemNotACrash) {
   std::string deep(100000, '[');
   for (const std::string& text :

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "text_file.hpp"
+#include "tum_trajectory.hpp"
 
 namespace planemap::sources {
 namespace {
@@ -45,8 +46,8 @@ std::string objection_to(const FolderOptions& options) {
     return "the focal lengths of the intrinsics must be greater than 0";
   }
   if (options.depth_scale_m && !positive(*options.depth_scale_m)) return "the depth scale must be greater than 0";
-  if (!std::isfinite(options.max_association_gap_s) || options.max_association_gap_s < 0.0) {
-    return "the greatest time between a frame and its pose must not be negative";
+  if (!(options.max_association_gap_s >= 0.0 && options.max_association_gap_s <= kMaxTumSeconds)) {
+    return "the greatest time between a frame and its pose must be from 0 to 1e11 s";
   }
   return {};
 }

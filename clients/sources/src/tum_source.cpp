@@ -28,7 +28,7 @@ struct ListedImage {
 ListedImage parse_image_line(std::string_view line) {
   const auto words = split_words(line);
   const auto seconds = words.size() == 2 ? parse_number(words[0]) : std::nullopt;
-  if (!seconds || *seconds <= 0.0 || *seconds > 1e11) return {};
+  if (!seconds || *seconds <= 0.0 || *seconds > kMaxTumSeconds) return {};
   return {std::llround(*seconds * 1e6), std::filesystem::path(std::string(words[1]))};
 }
 

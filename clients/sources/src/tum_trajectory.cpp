@@ -9,7 +9,6 @@ namespace planemap::sources {
 namespace {
 
 constexpr double kQuaternionTolerance = 1e-2;  // of its length from 1; TUM writes four digits
-constexpr double kMaxSeconds = 1e11;           // about the year 5000: larger ones are no times
 
 }  // namespace
 
@@ -18,7 +17,7 @@ std::optional<TumTrajectory::StampedPose> TumTrajectory::parse_line(std::string_
   if (!numbers || numbers->size() != 8) return std::nullopt;
   const std::vector<double>& n = *numbers;
   Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
-  if (std::abs(rotation.norm() - 1.0) > kQuaternionTolerance || std::abs(n[0]) > kMaxSeconds) return std::nullopt;
+  if (std::abs(rotation.norm() - 1.0) > kQuaternionTolerance || std::abs(n[0]) > kMaxTumSeconds) return std::nullopt;
   rotation.normalize();
   return StampedPose{std::llround(n[0] * 1e6), {n[1], n[2], n[3]}, rotation};
 }

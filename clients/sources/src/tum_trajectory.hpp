@@ -9,6 +9,9 @@
 
 namespace planemap::sources {
 
+/// About the year 5000: larger numbers are no times.
+constexpr double kMaxTumSeconds = 1e11;
+
 /// The camera's path in a TUM RGB-D folder (groundtruth.txt: t tx ty tz qx qy qz qw).
 class TumTrajectory {
  public:
@@ -17,6 +20,7 @@ class TumTrajectory {
 
   /// Where the camera was. Interpolated (rotation by slerp) between its two neighbours in time if they are at most two
   /// gaps apart, else the nearest; empty if the nearest is farther than the gap.
+  /// @pre utime and gap are at most kMaxTumSeconds
   std::optional<Eigen::Isometry3d> at(std::int64_t utime, std::int64_t max_gap_us) const;
 
   std::size_t size() const { return poses_.size(); }

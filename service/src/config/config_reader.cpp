@@ -3,10 +3,12 @@
 #include <spdlog/fmt/fmt.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <type_traits>
 
 namespace planemap::service {
@@ -249,13 +251,27 @@ class NodeReader {
   ConfigProblems& problems_;
 };
 
+/// YAML::LoadAll() would tell, too, but never ends on a stray comma.
+bool has_second_document(const std::string& text) {
+  bool begun = false;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool marks =
+        line.starts_with("---") && (line.size() == 3 || std::isspace(static_cast<unsigned char>(line[3])));
+    if (marks && begun) return true;
+    const auto first = line.find_first_not_of(" \t\r");
+    begun = begun || marks || (first != std::string::npos && line[first] != '#' && line[0] != '%');
+  }
+  return false;
+}
+
 }  // namespace
 
 void apply_yaml(const std::string& text, const std::string& name, ServiceConfig& config, ConfigProblems& problems) {
   try {
-    const auto documents = YAML::LoadAll(text);
-    if (documents.size() > 1) problems.add("configuration", "more than one YAML document", name);
-    if (!documents.empty()) NodeReader(name, /*has_lines=*/true, problems).read_root(documents.front(), config);
+    if (has_second_document(text)) problems.add("configuration", "more than one YAML document", name);
+    const YAML::Node document = YAML::Load(text);
+    if (!document.IsNull()) NodeReader(name, /*has_lines=*/true, problems).read_root(document, config);
   } catch (const YAML::Exception& e) {
     problems.add("YAML", e.msg, e.mark.is_null() ? name : fmt::format("{}:{}", name, e.mark.line + 1));
   }
