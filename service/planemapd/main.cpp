@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -20,6 +21,7 @@
 #include "ingest/kernel_drops.hpp"
 #include "logging.hpp"
 #include "serve/grpc/grpc_server.hpp"
+#include "serve/http/http_server.hpp"
 #include "service.hpp"
 
 namespace planemap::service {
@@ -77,6 +79,16 @@ void log_start(const ServiceConfig& config, const std::string& url, std::uint64_
   spdlog::info("configuration:\n{}", to_yaml(config));
 }
 
+/// @param each_second  is done meanwhile
+int wait_for_signal(const sigset_t& signals, const std::function<void()>& each_second) {
+  constexpr timespec kSecond{1, 0};
+  while (true) {
+    const int signal = sigtimedwait(&signals, nullptr, &kSecond);
+    if (signal > 0) return signal;
+    each_second();
+  }
+}
+
 /// Runs until SIGTERM or SIGINT. The signals are blocked in every thread and waited for here, so no handler ever runs.
 int serve(const ServiceConfig& config) {
   sigset_t signals;
@@ -106,11 +118,25 @@ int serve(const ServiceConfig& config) {
     service.set_snapshot_listener([&grpc] { grpc->wake(); });
     spdlog::info("gRPC on {}{}", grpc->address(), config.grpc.tls_certificate.empty() ? "" : " with TLS");
   }
+  std::unique_ptr<HttpServer> http;
+  if (!config.http.listen.empty()) {
+    auto started = HttpServer::start(config, service);
+    if (!started) {
+      spdlog::error("{}", started.error().message);
+      return kFailed;
+    }
+    http = std::move(*started);
+    spdlog::info("the map, to look at: {}", http->url());
+  }
+  service.health().begin();
   std::jthread bus_thread([&service](const std::stop_token& stop) { service.run(stop); });
-  int signal = 0;
-  sigwait(&signals, &signal);
+  const int signal = wait_for_signal(signals, [&] {
+    if (grpc) grpc->set_serving(service.health().readiness(steady_now_s()).is_good);
+  });
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the process at once
   spdlog::info("{}: ending", signal == SIGINT ? "SIGINT" : "SIGTERM");
+  service.health().end();
+  if (http) http->stop();
   if (grpc) grpc->stop();
   service.set_snapshot_listener({});
   bus_thread.request_stop();

@@ -32,6 +32,7 @@ Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch
       bus_(bus),
       // The mapper may have a snapshot before the server is made; it is not handed a scan before, though.
       mapping_(config, epoch, counters_, [this] { on_snapshot(); }),
+      health_(mapping_),
       intake_(
           config, counters_, [this](RegisteredScan&& scan) { mapping_.push(std::move(scan)); },
           [](const std::string& text) { spdlog::warn("{}", text); }),

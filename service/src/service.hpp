@@ -16,6 +16,7 @@
 #include "config/service_config.hpp"
 #include "ingest/scan_intake.hpp"
 #include "mapping/mapping_service.hpp"
+#include "serve/health.hpp"
 #include "serve/lcm/lcm_server.hpp"
 #include "serve/plane_book.hpp"
 
@@ -48,6 +49,8 @@ class Service {
   // What another server than the one on the bus is made of; they live as long as the service.
   MappingService& mapping() { return mapping_; }
   Counters& counter_board() { return counters_; }
+  PlaneBook& plane_book() { return book_; }
+  Health& health() { return health_; }
   StatusBoard status_board() { return {intake_, mapping_, counters_}; }
 
   std::shared_ptr<const MapSnapshot> snapshot() const { return mapping_.snapshot(); }
@@ -69,6 +72,7 @@ class Service {
   std::mutex listener_mutex_;
   std::function<void()> snapshot_listener_;
   MappingService mapping_;
+  Health health_;
   ScanIntake intake_;
   PlaneBook book_;
   LcmServer server_;

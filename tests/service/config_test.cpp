@@ -282,6 +282,29 @@ TEST(Config, WhatTheGrpcServerCannotDoIsRefused) {
   EXPECT_TRUE(load_overrides({"grpc.listen=0.0.0.0:7670", "grpc.tls_certificate=c", "grpc.tls_key=k"}));
 }
 
+TEST(Config, WhatTheHttpServerCannotDoIsRefused) {
+  const struct {
+    std::vector<std::string> overrides;
+    const char* problem;
+  } cases[] = {
+      {{"http.listen=0.0.0.0:7671"},
+       "http.listen: 0.0.0.0:7671 can be reached from other machines, and there it is plain text that anybody may read; "
+       "http.allow_remote: true allows it (or listen on 127.0.0.1)"},
+      {{"http.listen=7671"}, "http.listen: '7671' is no HOST:PORT: it has no port"},
+      {{"http.max_connections=8", "http.max_event_streams=8"},
+       "http.max_event_streams: 8 must be less than max_connections (8): requests need some, too"},
+      {{"http.update_period_s=0"}, "http.update_period_s: 0 is out of range (allowed: 0.01 to 60)"},
+  };
+  for (const auto& c : cases) {
+    const auto config = load_overrides(c.overrides);
+    ASSERT_FALSE(config) << c.overrides[0];
+    EXPECT_NE(config.error().message.find(c.problem), std::string::npos) << config.error().message << "\nnot\n"
+                                                                         << c.problem;
+  }
+  EXPECT_TRUE(load_overrides({"http.listen="}));
+  EXPECT_TRUE(load_overrides({"http.listen=0.0.0.0:7671", "http.allow_remote=true"}));
+}
+
 TEST(Config, TheExampleOfTheDocumentationIsTaken) {
   std::ifstream file(PLANEMAP_SOURCE_DIR "/docs/lcm.md");
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

@@ -158,6 +158,24 @@ void check_grpc(const GrpcConfig& grpc, ConfigProblems& problems) {
   }
 }
 
+void check_http(const HttpConfig& http, ConfigProblems& problems) {
+  if (http.max_event_streams >= http.max_connections) {
+    problems.add("http.max_event_streams",
+                 fmt::format("{} must be less than max_connections ({}): requests need some, too",
+                             http.max_event_streams, http.max_connections));
+  }
+  if (http.listen.empty()) return;
+  const auto address = parse_listen_address(http.listen);
+  if (!address) {
+    problems.add("http.listen", address.error().message);
+  } else if (!address->is_loopback() && !http.allow_remote) {
+    problems.add("http.listen", fmt::format("{} can be reached from other machines, and there it is plain text that "
+                                            "anybody may read; http.allow_remote: true allows it (or listen on "
+                                            "127.0.0.1)",
+                                            http.listen));
+  }
+}
+
 }  // namespace
 
 void check_config(ServiceConfig& config, ConfigProblems& problems) {
@@ -189,6 +207,7 @@ void check_config(ServiceConfig& config, ConfigProblems& problems) {
   check_channel_name("publish.request_channel", config.publish.request_channel, problems);
   check_channel_name("publish.point_cloud_channel", config.publish.point_cloud_channel, problems);
   check_grpc(config.grpc, problems);
+  check_http(config.http, problems);
 }
 
 }  // namespace planemap::service

@@ -182,6 +182,36 @@ void visit_fields(Config& c, Visit&& visit) {
         c.heartbeat_s);
 }
 
+struct HttpConfig {
+  std::string listen = "127.0.0.1:7671";  ///< HOST:PORT, [HOST]:PORT for IPv6; port 0: any free one; empty: no server
+  bool allow_remote = false;              ///< listens off the loopback, too: plain text, without authentication
+  int threads = 2;                        ///< that work out answers
+  int max_waiting_requests = 64;          ///< for one of the threads; more are refused
+  int max_connections = 64;               ///< beyond, the one that is idle for longest is closed
+  int max_event_streams = 32;             ///< of the connections; more are refused
+  double update_period_s = 0.1;           ///< least time between two deltas; answers may be older by so much
+  double heartbeat_s = 5.0;               ///< event streams hear something at least so often
+};
+
+template <MaybeConst<HttpConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"listen", "HOST:PORT; port 0: any free one; empty: no server", 0, 255}, c.listen);
+  visit(FieldInfo{"allow_remote", "listen may be off the loopback: anybody there reads all, in plain text"},
+        c.allow_remote);
+  visit(FieldInfo{"threads", "threads that work out answers", 1, 64}, c.threads);
+  visit(FieldInfo{"max_waiting_requests", "requests that wait for one of the threads; more are refused", 1, 10000},
+        c.max_waiting_requests);
+  visit(FieldInfo{"max_connections", "connections at a time; beyond, the one that is idle for longest is closed", 2,
+                  10000},
+        c.max_connections);
+  visit(
+      FieldInfo{"max_event_streams", "of the connections, those that are told of changes; more are refused", 1, 10000},
+      c.max_event_streams);
+  visit(FieldInfo{"update_period_s", "least time between two deltas; answers may be older by so much", 0.01, 60.0},
+        c.update_period_s);
+  visit(FieldInfo{"heartbeat_s", "event streams hear something at least so often", 0.1, 60.0}, c.heartbeat_s);
+}
+
 struct LogConfig {
   std::string level = "info";
   std::string format = "text";
@@ -218,6 +248,7 @@ struct ServiceConfig {
   MappingConfig mapping;
   PublishConfig publish;
   GrpcConfig grpc;
+  HttpConfig http;
   LogConfig log;
   LimitsConfig limits;
 };
@@ -245,6 +276,7 @@ void visit_sections(Config& c, Visit&& visit) {
   visit(SectionInfo{"mapping", "The mapper."}, c.mapping);
   visit(SectionInfo{"publish", "What goes out over LCM."}, c.publish);
   visit(SectionInfo{"grpc", "What remote clients may ask over gRPC (planemap.v1)."}, c.grpc);
+  visit(SectionInfo{"http", "The viewer's page and what it asks, metrics and health, over HTTP."}, c.http);
   visit(SectionInfo{"log", "The log, on standard error."}, c.log);
   visit(SectionInfo{"limits", "What is taken from the outside at most."}, c.limits);
 }

@@ -95,6 +95,7 @@ std::vector<std::string> command_of(const LatencyConfig& config) {
   command.insert(command.end(), {"--lcm-url", config.url});
   set("publish.status_period_s=0.1");
   set("grpc.listen=");
+  set("http.listen=");
   set("pose.exact_s=0");  // a pose is only before or after a scan, so it is known which one the daemon waits for
   for (const std::string& setting : config.settings) set(setting);
   return command;

@@ -20,7 +20,7 @@ class Daemon:
 
     def __init__(self, *settings: str, server: str = "127.0.0.1:0") -> None:
         command = [str(BIN / "planemapd"), "--lcm-url", LCM_URL]
-        for setting in (f"grpc.listen={server}", "map.gravity=[0, 0, -1]", *settings):
+        for setting in (f"grpc.listen={server}", "http.listen=127.0.0.1:0", "map.gravity=[0, 0, -1]", *settings):
             command += ["--set", setting]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
         self.server = self._read_server()

@@ -12,7 +12,7 @@
 #include "codec/proto_answer_codec.hpp"
 #include "serve/grpc/delta_pages.hpp"
 #include "serve/grpc/map_pages.hpp"
-#include "serve/grpc/worker_pool.hpp"
+#include "serve/worker_pool.hpp"
 
 namespace planemap::service {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "common/counters.hpp"
 #include "serve/grpc/call_guard.hpp"
-#include "serve/grpc/worker_pool.hpp"
+#include "serve/worker_pool.hpp"
 
 namespace planemap::service {
 

@@ -104,10 +104,7 @@ class GrpcServer::Impl {
     acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD, credentials);
     server_ = builder.BuildAndStart();
     if (!server_) return false;
-    auto* health = server_->GetHealthCheckService();
-    for (const char* name : {v1::PlaneMap::service_full_name(), v1::Admin::service_full_name()}) {
-      health->SetServingStatus(name, true);
-    }
+    set_serving(true);
     gate_->start([this](int listener, int descriptor) {
       grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
       connection.listener_fd = listener;
@@ -129,6 +126,12 @@ class GrpcServer::Impl {
     server_.reset();
   }
 
+  void set_serving(bool is_serving) {
+    auto* health = server_->GetHealthCheckService();
+    for (const char* name : {"", v1::PlaneMap::service_full_name(), v1::Admin::service_full_name()}) {
+      health->SetServingStatus(name, is_serving);
+    }
+  }
   void wake() { keeper_.wake(); }
   std::uint16_t port() const { return gate_->port(); }
   std::string address() const {
@@ -188,6 +191,10 @@ std::uint16_t GrpcServer::port() const {
 
 std::string GrpcServer::address() const {
   return impl_->address();
+}
+
+void GrpcServer::set_serving(bool is_serving) {
+  impl_->set_serving(is_serving);
 }
 
 void GrpcServer::wake() {

@@ -14,7 +14,7 @@ namespace planemap::service {
 
 /// planemap.v1 over gRPC, with health (grpc.health.v1) and reflection. Answers come from the newest snapshot, on
 /// threads of its own; the mapper never waits for it. Health is SERVING, overall ("") and for planemap.v1.PlaneMap and
-/// planemap.v1.Admin, from start() until stop().
+/// planemap.v1.Admin, from start() until stop(), unless set_serving() says otherwise.
 class GrpcServer {
  public:
   /// Listens and serves. All that is handed in must outlive the server. The error says which setting or file cannot be
@@ -29,6 +29,8 @@ class GrpcServer {
   std::uint16_t port() const;
   /// HOST:PORT as clients on this machine would write it.
   std::string address() const;
+  /// Health says SERVING, or NOT_SERVING; from any thread, until stop().
+  void set_serving(bool is_serving);
   /// There is a new snapshot. Returns at once; from any thread.
   void wake();
   /// Says NOT_SERVING, ends watches, lets the other calls end within a second, closes. The destructor does it, too.

@@ -1,4 +1,4 @@
-#include "serve/grpc/worker_pool.hpp"
+#include "serve/worker_pool.hpp"
 
 #include <utility>
 

@@ -10,7 +10,7 @@
 
 namespace planemap::service {
 
-/// Some threads that do what is asked of them in turn. gRPC's own threads must not be kept waiting.
+/// Some threads that do what is asked of them in turn. The servers' own threads must not be kept waiting.
 class WorkerPool {
  public:
   using Job = std::function<void()>;
