@@ -12,7 +12,9 @@
 #include <regex>
 #include <sstream>
 
+#include "export/cells_ply.hpp"
 #include "export/colour.hpp"
+#include "export/export_map_of_wire.hpp"
 #include "export/exporter.hpp"
 #include "export/floor_plan.hpp"
 #include "export/formats.hpp"

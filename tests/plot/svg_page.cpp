@@ -55,7 +55,7 @@ void SvgPage::text(const Pixel& at, std::string_view text, std::string_view clas
   std::string turn;
   if (turn_deg != 0.0) turn = fmt::format(" transform=\"rotate({:.1f} {:.1f} {:.1f})\"", turn_deg, at.x(), at.y());
   body_ += fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", classes, at.x(), at.y(), turn,
-                       cli::escaped(text));
+                       escaped(text));
 }
 
 void SvgPage::line(const Pixel& from, const Pixel& to, std::string_view classes) {
@@ -101,7 +101,7 @@ std::string SvgPage::svg() const {
       "{1:.0f}\">\n"
       "<title>{2}</title>\n<style>\n{3}@media (prefers-color-scheme:dark){{\n{4}}}\n</style>\n"
       "<rect class=\"page\" width=\"100%\" height=\"100%\"/>\n{5}</svg>\n",
-      width_, height_, cli::escaped(title_), light_, dark_, body_);
+      width_, height_, escaped(title_), light_, dark_, body_);
 }
 
 void SvgPage::save(const std::filesystem::path& file) const {

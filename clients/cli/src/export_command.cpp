@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "daemon_options.hpp"
+#include "export/export_map_of_wire.hpp"
 #include "export/exporter.hpp"
 
 namespace planemap::cli {

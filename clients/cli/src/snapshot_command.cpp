@@ -6,6 +6,7 @@
 
 #include "command.hpp"
 #include "daemon_options.hpp"
+#include "export/export_map_of_wire.hpp"
 #include "export/formats.hpp"
 #include "plane_table.hpp"
 

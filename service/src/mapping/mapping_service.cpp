@@ -186,11 +186,20 @@ void MappingService::map(const RegisteredScan& scan) {
   counters_.scan_mapped(report.points);
   counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));
   const auto& ms = timer.ms();
+  {
+    const std::lock_guard lock(listener_mutex_);
+    if (scan_listener_) scan_listener_({scan, first_epoch_ + map_number_ + resets_, ms, 1e3 * (end_s - begin_s)});
+  }
   spdlog::trace(
       "scan {}: {} points, {} cells, {:.2f} ms (assign {:.2f}, normals {:.2f}, local {:.2f}, global {:.2f}, "
       "wear {:.2f}, snapshot {:.2f})",
       utime_of(scan.scan), report.points.mapped, report.touched_cells, 1e3 * (end_s - begin_s), ms[0], ms[1], ms[2],
       ms[3], ms[4], ms[5]);
+}
+
+void MappingService::set_scan_listener(std::function<void(const MappedScan&)> listener) {
+  const std::lock_guard lock(listener_mutex_);
+  scan_listener_ = std::move(listener);
 }
 
 std::shared_ptr<const MapSnapshot> MappingService::snapshot() const {

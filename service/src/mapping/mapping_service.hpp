@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -39,6 +40,14 @@ struct MappingStats {
   bool is_paused = false;
 };
 
+/// A scan that is in the map now.
+struct MappedScan {
+  const RegisteredScan& scan;
+  std::uint64_t epoch = 0;                     ///< of the map
+  std::array<double, kStageCount> stage_ms{};  ///< by Stage
+  double scan_ms = 0.0;                        ///< all of it
+};
+
 /// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
 class MappingService {
  public:
@@ -55,6 +64,9 @@ class MappingService {
   /// Queues a scan; if the queue is full, its oldest one is dropped and counted. A scan of a greater map number than
   /// those before begins a new map. From any thread.
   void push(RegisteredScan&& scan);
+  /// Told of each mapped scan, on the mapper's thread, once its snapshot is there; must return at once and throw
+  /// nothing. Empty: nobody is told; once this has returned, the one before is not called any more. From any thread.
+  void set_scan_listener(std::function<void(const MappedScan&)> listener);
   /// The newest snapshot, never nullptr; immutable. From any thread.
   std::shared_ptr<const MapSnapshot> snapshot() const;
   /// @param now_host_s  the host's steady clock, seconds
@@ -101,6 +113,9 @@ class MappingService {
   std::uint64_t asked_resets_ = 0;
   std::uint64_t done_resets_ = 0;
   std::condition_variable reset_done_;
+
+  std::mutex listener_mutex_;
+  std::function<void(const MappedScan&)> scan_listener_;
 
   std::jthread thread_;  ///< last: ends before what it uses
 };

@@ -1,3 +1,5 @@
+#include "export/cells_ply.hpp"
+
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
@@ -5,7 +7,6 @@
 #include <fstream>
 
 #include "export/colour.hpp"
-#include "export/formats.hpp"
 
 namespace planemap::cli {
 namespace {

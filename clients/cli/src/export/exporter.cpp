@@ -8,6 +8,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "export/cells_ply.hpp"
 #include "export/formats.hpp"
 
 namespace planemap::cli {

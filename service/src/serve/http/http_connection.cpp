@@ -89,6 +89,7 @@ HttpAnswer HttpConnection::answer_to_broken(error_code error) const {
 }
 
 void HttpConnection::serve(const HttpRequest& request) {
+  if (request.path == kEventsPath) return serve_events();
   if (auto quick = desk_.site.quick_answer(request)) return write(std::move(*quick));
   const bool has_room = desk_.pool.try_post([self = shared_from_this(), request] {
     HttpAnswer answer;
@@ -104,6 +105,19 @@ void HttpConnection::serve(const HttpRequest& request) {
   if (has_room) return;
   write(error_answer(503, std::to_string(desk_.pool.capacity()) +
                               " requests wait already (http.max_waiting_requests); ask again later"));
+}
+
+/// The hub takes over, and this connection ends without closing.
+void HttpConnection::serve_events() {
+  keeps_alive_ = false;
+  if (is_head_only_) return write(answer_of("text/event-stream", {}));
+  if (!desk_.hub.has_room()) {
+    return write(error_answer(
+        503, std::to_string(desk_.hub.max_streams()) + " event streams are served already (http.max_event_streams)"));
+  }
+  desk_.counters.add("http.requests.200");
+  stream_.expires_never();
+  desk_.hub.add(std::move(stream_), std::move(place_));
 }
 
 void HttpConnection::write(HttpAnswer answer) {

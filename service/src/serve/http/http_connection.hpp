@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/counters.hpp"
+#include "serve/http/event_hub.hpp"
 #include "serve/http/http_message.hpp"
 #include "serve/http/http_site.hpp"
 #include "serve/worker_pool.hpp"
@@ -20,6 +21,7 @@ namespace planemap::service {
 struct HttpDesk {
   HttpSite& site;
   WorkerPool& pool;
+  EventHub& hub;
   Counters& counters;
   const bool is_loopback;  ///< the server is for this machine alone
 };
@@ -47,6 +49,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void on_request(boost::beast::error_code error);
   HttpAnswer answer_to_broken(boost::beast::error_code error) const;
   void serve(const HttpRequest& request);
+  void serve_events();
   void write(HttpAnswer answer);
   void write_body(std::size_t from);
   void after_write();

@@ -5,6 +5,8 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -22,10 +24,11 @@ class HttpServer::Impl {
  public:
   Impl(const ServiceConfig& config, ListenAddress address, Service& service)
       : address_(std::move(address)),
-        site_(service.health()),
+        site_(config, service),
         pool_(static_cast<std::size_t>(config.http.threads),
               static_cast<std::size_t>(config.http.max_waiting_requests)),
-        desk_{site_, pool_, service.counter_board(), address_.is_loopback()},
+        hub_(io_, pool_, config.http, [this](bool with_status) { return site_.news(with_status); }),
+        desk_{site_, pool_, hub_, service.counter_board(), address_.is_loopback()},
         listener_(io_, desk_, static_cast<std::size_t>(config.http.max_connections)) {}
   ~Impl() { stop(); }
   Impl(const Impl&) = delete;
@@ -34,12 +37,15 @@ class HttpServer::Impl {
   Expected<void> listen() { return listener_.listen_on(address_); }
   void serve() {
     listener_.start();
+    tidy_up_later();
     thread_ = std::thread([this] { run(); });
   }
   void stop() {
     if (!thread_.joinable()) return;
     net::post(io_, [this] {
+      tidy_timer_.cancel();
       listener_.stop();
+      hub_.stop();
       io_.stop();
     });
     thread_.join();
@@ -52,6 +58,15 @@ class HttpServer::Impl {
   }
 
  private:
+  void tidy_up_later() {
+    tidy_timer_.expires_after(std::chrono::seconds(5));
+    tidy_timer_.async_wait([this](boost::system::error_code cancelled) {
+      if (cancelled) return;
+      pool_.try_post([this] { site_.tidy_up(); });
+      tidy_up_later();
+    });
+  }
+
   /// A handler that throws costs its own connection.
   void run() {
     while (true) {
@@ -67,10 +82,12 @@ class HttpServer::Impl {
   const ListenAddress address_;
   HttpSite site_;
   WorkerPool pool_;
-  HttpDesk desk_;
   net::io_context io_{1};  ///< 1: one thread runs it
+  EventHub hub_;
+  HttpDesk desk_;
   net::executor_work_guard<net::io_context::executor_type> work_ = net::make_work_guard(io_);
   HttpListener listener_;
+  net::steady_timer tidy_timer_{io_};
   std::thread thread_;
 };
 

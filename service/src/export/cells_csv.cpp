@@ -5,7 +5,7 @@
 
 #include "export/formats.hpp"
 
-namespace planemap::cli {
+namespace planemap {
 
 void write_cells_csv(const ExportMap& map, std::ostream& out) {
   std::ostreambuf_iterator<char> to(out);
@@ -23,4 +23,4 @@ void write_cells_csv(const ExportMap& map, std::ostream& out) {
   }
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <planemap/client/map_types.hpp>
 #include <planemap/outline.hpp>
 #include <planemap/plane.hpp>
+#include <planemap/query/snapshot_queries.hpp>
 #include <planemap/snapshot.hpp>
 #include <string>
 #include <vector>
 
-namespace planemap::cli {
+namespace planemap {
 
 struct ExportPlane {
   PlaneRecord record;
@@ -26,7 +27,8 @@ struct ExportMap {
   std::uint64_t revision = 0;
   std::optional<Eigen::Vector3d> gravity;  ///< unit, down in the world frame; empty: not known
   std::vector<ExportPlane> planes;         ///< by id
-  std::vector<CellView> cells;             ///< dense ones
+  std::vector<CellView> cells;             ///< dense ones; may be left out
+  std::size_t cell_count = 0;              ///< of dense ones, also where they are left out
 };
 
 /// From a snapshot of this process: outlines and classes are worked out here.
@@ -34,7 +36,11 @@ struct ExportMap {
 ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
                         const std::optional<Eigen::Vector3d>& gravity);
 
-/// From a service's answer. Which way is down is taken from its floors, tables and ceilings.
-Expected<ExportMap> export_map_of(const client::Map& wire);
+/// The same with outlines and classes that are known already, and without the cells.
+ExportMap export_map_of(const SnapshotQueries& queries, const std::string& frame,
+                        const std::optional<Eigen::Vector3d>& gravity);
 
-}  // namespace planemap::cli
+/// Links the planes that are coplanar.
+void set_coplanar_links(std::vector<ExportPlane>& planes);
+
+}  // namespace planemap

@@ -2,7 +2,7 @@
 
 #include "export/formats.hpp"
 
-namespace planemap::cli {
+namespace planemap {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -51,16 +51,20 @@ Json json_of(const ExportPlane& plane) {
 
 }  // namespace
 
+std::string plane_json(const ExportPlane& plane) {
+  return json_of(plane).dump();
+}
+
 void write_planes_json(const ExportMap& map, std::ostream& out) {
   // A plane a line: a diff of two maps then shows which planes differ.
   out << R"({"frame": )" << Json(map.frame).dump() << R"(, "epoch": )" << map.epoch << R"(, "revision": )"
       << map.revision << R"(, "planes": [)";
   const char* separator = "\n";
   for (const ExportPlane& plane : map.planes) {
-    out << separator << json_of(plane).dump();
+    out << separator << plane_json(plane);
     separator = ",\n";
   }
   out << "\n]}\n";
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap

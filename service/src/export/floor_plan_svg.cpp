@@ -12,7 +12,7 @@
 #include "export/formats.hpp"
 #include "export/xml_text.hpp"
 
-namespace planemap::cli {
+namespace planemap {
 namespace {
 
 // Pixels.
@@ -114,7 +114,7 @@ class Drawing {
     if (!map_.gravity) floor = ", gravity not known: −z is taken for down";
     print(R"(<text class="sub" x="{}" y="56">{} planes, {} cells{} · frame {}, revision {} of map {}</text>)"
           "\n",
-          kMargin, map_.planes.size(), map_.cells.size(), floor, escaped(map_.frame), map_.revision, map_.epoch);
+          kMargin, map_.planes.size(), map_.cell_count, floor, escaped(map_.frame), map_.revision, map_.epoch);
   }
 
   /// Lines a metre apart: distances can be read anywhere, not only at the scale bar.
@@ -287,4 +287,4 @@ void write_floor_plan_svg(const ExportMap& map, std::ostream& out) {
   Drawing(map, out).draw();
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap

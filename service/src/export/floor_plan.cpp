@@ -8,7 +8,7 @@
 #include <optional>
 #include <planemap/classify.hpp>
 
-namespace planemap::cli {
+namespace planemap {
 namespace {
 
 constexpr double kCutStepM = 0.1;
@@ -178,4 +178,4 @@ FloorPlan floor_plan_of(const ExportMap& map) {
   return plan;
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap

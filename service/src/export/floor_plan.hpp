@@ -6,7 +6,7 @@
 
 #include "export/export_map.hpp"
 
-namespace planemap::cli {
+namespace planemap {
 
 using Point2 = Eigen::Vector2d;
 
@@ -49,4 +49,4 @@ struct FloorPlan {
 /// @param map  where its gravity is not known, down is -z
 FloorPlan floor_plan_of(const ExportMap& map);
 
-}  // namespace planemap::cli
+}  // namespace planemap

@@ -1,17 +1,12 @@
-#include "export/export_map.hpp"
+#include "export/export_map_of_wire.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <map>
-#include <planemap/classify.hpp>
-#include <planemap/coplanar.hpp>
 #include <utility>
 
 namespace planemap::cli {
 namespace {
-
-using CentresByPlane = std::map<PlaneId, std::vector<Eigen::Vector3d>>;
 
 constexpr std::array kClasses = {PlaneClass::kFloor, PlaneClass::kCeiling, PlaneClass::kWall, PlaneClass::kTable,
                                  PlaneClass::kSlope};
@@ -19,26 +14,6 @@ constexpr std::array kClasses = {PlaneClass::kFloor, PlaneClass::kCeiling, Plane
 PlaneClass class_named(const std::string& name) {
   const auto found = std::find_if(kClasses.begin(), kClasses.end(), [&](PlaneClass c) { return name_of(c) == name; });
   return found == kClasses.end() ? PlaneClass::kOther : *found;
-}
-
-void set_classes(std::vector<ExportPlane>& planes, const std::optional<Eigen::Vector3d>& gravity) {
-  std::vector<Surface> surfaces;
-  surfaces.reserve(planes.size());
-  for (const ExportPlane& plane : planes) {
-    surfaces.push_back({plane.record.plane, plane.record.centroid_m, plane.outline.area_m2});
-  }
-  const std::vector<PlaneClass> classes = classify(surfaces, gravity);
-  for (std::size_t i = 0; i < planes.size(); ++i) planes[i].plane_class = classes[i];
-}
-
-void set_links(std::vector<ExportPlane>& planes) {
-  std::vector<SizedPlane> sized;
-  sized.reserve(planes.size());
-  for (const ExportPlane& plane : planes) sized.push_back({&plane.record, plane.outline.area_m2});
-  CoplanarLinks links = coplanar_links(sized);
-  for (ExportPlane& plane : planes) {
-    if (const auto linked = links.find(plane.record.id); linked != links.end()) plane.coplanar = linked->second;
-  }
 }
 
 /// Down, as the level surfaces say; empty where there are none.
@@ -110,29 +85,6 @@ CellView cell_of_wire(const client::Cell& wire) {
 
 }  // namespace
 
-ExportMap export_map_of(const MapSnapshot& snapshot, const std::string& frame,
-                        const std::optional<Eigen::Vector3d>& gravity) {
-  ExportMap map;
-  map.frame = frame;
-  map.epoch = snapshot.epoch();
-  map.revision = snapshot.revision();
-  if (gravity) map.gravity = gravity->normalized();
-  CentresByPlane centres_m;
-  snapshot.for_each_cell([&](const CellView& cell) {
-    map.cells.push_back(cell);
-    if (cell.plane_id != kNoPlane) centres_m[cell.plane_id].push_back(cell.centre_m);
-  });
-  map.planes.reserve(snapshot.planes().size());
-  for (const auto& record : snapshot.planes()) {
-    ExportPlane& plane = map.planes.emplace_back();
-    plane.record = *record;
-    plane.outline = outline_of(record->plane, record->centroid_m, centres_m[record->id], snapshot.cell_size_m());
-  }
-  set_classes(map.planes, map.gravity);
-  set_links(map.planes);
-  return map;
-}
-
 Expected<ExportMap> export_map_of(const client::Map& wire) {
   ExportMap map;
   map.frame = wire.frame;
@@ -144,9 +96,10 @@ Expected<ExportMap> export_map_of(const client::Map& wire) {
     map.planes.push_back(std::move(*plane));
   }
   map.gravity = gravity_of(map.planes);
-  set_links(map.planes);
+  set_coplanar_links(map.planes);
   map.cells.reserve(wire.cells.size());
   std::transform(wire.cells.begin(), wire.cells.end(), std::back_inserter(map.cells), cell_of_wire);
+  map.cell_count = map.cells.size();
   return map;
 }
 

@@ -4,7 +4,7 @@
 #include <planemap/plane.hpp>
 #include <string>
 
-namespace planemap::cli {
+namespace planemap {
 
 /// 0 to 255 each.
 struct Colour {
@@ -20,4 +20,4 @@ struct Colour {
 /// @param lightness  0 black to 1 white
 Colour colour_of(PlaneId id, double lightness = 0.45);
 
-}  // namespace planemap::cli
+}  // namespace planemap

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace planemap::cli {
+namespace planemap {
 
 /// The text as XML may hold it: reserved characters as entities, control characters as blanks.
 inline std::string escaped(std::string_view text) {
@@ -29,4 +29,4 @@ inline std::string escaped(std::string_view text) {
   return result;
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap

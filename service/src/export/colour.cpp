@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace planemap::cli {
+namespace planemap {
 
 std::string Colour::hex() const {
   return fmt::format("#{:02x}{:02x}{:02x}", red, green, blue);
@@ -24,4 +24,4 @@ Colour colour_of(PlaneId id, double lightness) {
   return {channel(0.0), channel(8.0), channel(4.0)};
 }
 
-}  // namespace planemap::cli
+}  // namespace planemap
