@@ -28,9 +28,11 @@ readonly RUN_PACKAGES=(
   liblcm1
   libpcl-io1.13
   libpng16-16
+  libprometheus-cpp-core1.0
   libprotobuf32
   libspdlog1.10
   libsqlite3-0
+  libsystemd0
   libyaml-cpp0.7
   util-linux          # unshare, taskset
   zlib1g
@@ -52,9 +54,11 @@ readonly BUILD_PACKAGES=(
   libprotobuf-dev
   libspdlog-dev
   libsqlite3-dev
+  libsystemd-dev
   libyaml-cpp-dev
   ninja-build
   nlohmann-json3-dev
+  prometheus-cpp-dev
   protobuf-compiler
   protobuf-compiler-grpc
   zlib1g-dev

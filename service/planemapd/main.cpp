@@ -1,11 +1,14 @@
 // The daemon: scans and poses in over LCM, a plane map out.
 
 #include <pthread.h>
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -23,6 +26,7 @@
 #include "serve/grpc/grpc_server.hpp"
 #include "serve/http/http_server.hpp"
 #include "service.hpp"
+#include "service_manager.hpp"
 
 namespace planemap::service {
 namespace {
@@ -79,15 +83,51 @@ void log_start(const ServiceConfig& config, const std::string& url, std::uint64_
   spdlog::info("configuration:\n{}", to_yaml(config));
 }
 
-/// @param each_second  is done meanwhile
-int wait_for_signal(const sigset_t& signals, const std::function<void()>& each_second) {
-  constexpr timespec kSecond{1, 0};
+/// @param meanwhile  is done once in each period
+int wait_for_signal(const sigset_t& signals, std::chrono::microseconds period, const std::function<void()>& meanwhile) {
+  constexpr std::int64_t kSecond = 1000000;
+  const timespec timeout{period.count() / kSecond, 1000 * (period.count() % kSecond)};
   while (true) {
-    const int signal = sigtimedwait(&signals, nullptr, &kSecond);
+    const int signal = sigtimedwait(&signals, nullptr, &timeout);
     if (signal > 0) return signal;
-    each_second();
+    meanwhile();
   }
 }
+
+/// Tells others how the service is: gRPC health, and the service manager. A mapper that hangs is not alive, so that the
+/// service manager's watchdog ends the daemon.
+class Reporter {
+ public:
+  Reporter(Service& service, GrpcServer* grpc) : service_(service), grpc_(grpc) { manager_.ready(text()); }
+
+  void report() {
+    const double now_s = steady_now_s();
+    const HealthReport ready = service_.health().readiness(now_s);
+    if (grpc_ != nullptr) grpc_->set_serving(ready.is_good);
+    if (service_.health().liveness(now_s).is_good) manager_.beat();
+    std::string now = ready.is_good ? text() : ready.reason;
+    if (now == told_) return;
+    manager_.status(now);
+    told_ = std::move(now);
+  }
+  void end() { manager_.stopping(); }
+  std::chrono::microseconds period() const {
+    constexpr std::chrono::microseconds kLongest = std::chrono::seconds(1);
+    return std::min(kLongest, manager_.beat_period().value_or(kLongest));
+  }
+
+ private:
+  std::string text() const {
+    const auto snapshot = service_.snapshot();
+    return fmt::format("{} planes, {} cells, {} scans mapped", snapshot->planes().size(), snapshot->cell_count(),
+                       service_.mapping().stats(steady_now_s()).mapped);
+  }
+
+  Service& service_;
+  GrpcServer* grpc_;
+  ServiceManager manager_;
+  std::string told_;
+};
 
 /// Runs until SIGTERM or SIGINT. The signals are blocked in every thread and waited for here, so no handler ever runs.
 int serve(const ServiceConfig& config) {
@@ -130,12 +170,12 @@ int serve(const ServiceConfig& config) {
   }
   service.health().begin();
   std::jthread bus_thread([&service](const std::stop_token& stop) { service.run(stop); });
-  const int signal = wait_for_signal(signals, [&] {
-    if (grpc) grpc->set_serving(service.health().readiness(steady_now_s()).is_good);
-  });
+  Reporter reporter(service, grpc.get());
+  const int signal = wait_for_signal(signals, reporter.period(), [&reporter] { reporter.report(); });
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);  // a second one ends the process at once
   spdlog::info("{}: ending", signal == SIGINT ? "SIGINT" : "SIGTERM");
   service.health().end();
+  reporter.end();
   if (http) http->stop();
   if (grpc) grpc->stop();
   service.set_snapshot_listener({});

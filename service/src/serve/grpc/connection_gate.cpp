@@ -143,6 +143,7 @@ void ConnectionGate::run() {
       }
     }
     connections_.swap(open_connections);
+    counters_.set("grpc.connections.open", static_cast<std::int64_t>(connections_.size()));
     for (std::size_t i = 0; i < listeners_.size(); ++i) {
       if (polled[1 + i].revents != 0) accept_from(listeners_[i]);
     }
@@ -173,6 +174,7 @@ void ConnectionGate::accept_from(int listener) {
   const int on = 1;
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   connections_.push_back(watched);
+  counters_.set("grpc.connections.open", static_cast<std::int64_t>(connections_.size()));
   counters_.add("grpc.connections.accepted");
   hand_on_(listener, connection);
 }

@@ -29,7 +29,9 @@ class HttpServer::Impl {
               static_cast<std::size_t>(config.http.max_waiting_requests)),
         hub_(io_, pool_, config.http, [this](bool with_status) { return site_.news(with_status); }),
         desk_{site_, pool_, hub_, service.counter_board(), address_.is_loopback()},
-        listener_(io_, desk_, static_cast<std::size_t>(config.http.max_connections)) {}
+        listener_(io_, desk_, static_cast<std::size_t>(config.http.max_connections)) {
+    site_.set_client_counts([this] { return ClientCounts{listener_.open(), hub_.size()}; });
+  }
   ~Impl() { stop(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;

@@ -69,7 +69,10 @@ HttpSite::HttpSite(const ServiceConfig& config, Service& service)
       live_(config.mapper.sensor),
       feed_(config, service.mapping(), service.plane_book()),
       board_(service.status_board()) {
-  service_.mapping().set_scan_listener([this](const MappedScan& mapped) { live_.on_mapped(mapped); });
+  service_.mapping().set_scan_listener([this](const MappedScan& mapped) {
+    live_.on_mapped(mapped);
+    metrics_.on_mapped(mapped);
+  });
 }
 
 HttpSite::~HttpSite() {
@@ -89,7 +92,8 @@ HttpAnswer HttpSite::answer(const HttpRequest& request) {
   if (path == "/api/v1/cells") return compressed(cells(request), request);
   if (path == "/api/v1/scan") return scan();
   if (path == "/api/v1/path") return compressed(answer_of(kJson, live_.path_json()), request);
-  if (path == "/api/v1/status") return answer_of(kJson, status_json() + "\n");
+  if (path == "/api/v1/status") return answer_of(kJson, status_json(status()) + "\n");
+  if (path == "/metrics") return compressed(metrics(), request);
   if (path == "/api/v1/licenses") return license_answer(request);
   if (const auto name = behind(path, "/api/v1/export/"); !name.empty()) return compressed(export_of(name), request);
   if (auto asset = asset_answer(request)) return std::move(*asset);
@@ -171,9 +175,22 @@ HttpAnswer HttpSite::export_of(std::string_view name) {
                                        name));
 }
 
-std::string HttpSite::status_json() {
+planemap_lcm::status_t HttpSite::status() {
   const std::lock_guard lock(board_mutex_);
-  return planemap::service::status_json(board_.status(steady_now_s(), utime_now()));
+  return board_.status(steady_now_s(), utime_now());
+}
+
+HttpAnswer HttpSite::metrics() {
+  const double now_s = steady_now_s();
+  const ClientCounts clients = client_counts_ ? client_counts_() : ClientCounts{};
+  const MetricSources sources{status(),
+                              service_.mapping().stats(now_s),
+                              service_.snapshot(),
+                              service_.health().liveness(now_s).is_good,
+                              service_.health().readiness(now_s).is_good,
+                              clients.connections,
+                              clients.event_streams};
+  return answer_of("text/plain; version=0.0.4; charset=utf-8", metrics_.text(sources));
 }
 
 EventNews HttpSite::news(bool with_status) {
@@ -188,7 +205,7 @@ EventNews HttpSite::news(bool with_status) {
                                        pose->utime, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z())));
     news.pose_utime = pose->utime;
   }
-  if (with_status) news.status = std::make_shared<const std::string>(event_text("status", status_json()));
+  if (with_status) news.status = std::make_shared<const std::string>(event_text("status", status_json(status())));
   return news;
 }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "config/service_config.hpp"
 #include "serve/health.hpp"
@@ -11,6 +15,7 @@
 #include "serve/http/http_message.hpp"
 #include "serve/http/live_view.hpp"
 #include "serve/http/map_feed.hpp"
+#include "serve/http/metrics.hpp"
 #include "serve/status_board.hpp"
 
 namespace planemap::service {
@@ -19,6 +24,12 @@ class Service;
 
 /// Where the connection itself goes to the hub of events.
 constexpr const char* kEventsPath = "/api/v1/events";
+
+/// Those that are connected now.
+struct ClientCounts {
+  std::size_t connections = 0;
+  std::size_t event_streams = 0;  ///< of the connections
+};
 
 /// What is to be found where (docs/http.md). Safe from any thread.
 class HttpSite {
@@ -29,6 +40,8 @@ class HttpSite {
   HttpSite(const HttpSite&) = delete;
   HttpSite& operator=(const HttpSite&) = delete;
 
+  /// Before the first request: whom to ask how many clients there are; from any thread.
+  void set_client_counts(std::function<ClientCounts()> counts) { client_counts_ = std::move(counts); }
   /// Answers that take no time and must come whatever else there is to do; empty: it is none of those.
   std::optional<HttpAnswer> quick_answer(const HttpRequest& request) const;
   /// Any answer.
@@ -44,11 +57,14 @@ class HttpSite {
   HttpAnswer cells(const HttpRequest& request);
   HttpAnswer scan();
   HttpAnswer export_of(std::string_view name);
-  std::string status_json();
+  HttpAnswer metrics();
+  planemap_lcm::status_t status();
 
   Service& service_;
   const MapConfig map_config_;
+  std::function<ClientCounts()> client_counts_;
   LiveView live_;
+  Metrics metrics_;
   MapFeed feed_;
   std::mutex board_mutex_;
   StatusBoard board_;
