@@ -98,7 +98,10 @@ int wait_for_signal(const sigset_t& signals, std::chrono::microseconds period, c
 /// service manager's watchdog ends the daemon.
 class Reporter {
  public:
-  Reporter(Service& service, GrpcServer* grpc) : service_(service), grpc_(grpc) { manager_.ready(text()); }
+  Reporter(Service& service, GrpcServer* grpc) : service_(service), grpc_(grpc) {
+    told_ = text();
+    manager_.ready(told_);
+  }
 
   void report() {
     const double now_s = steady_now_s();
