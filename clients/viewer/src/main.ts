@@ -21,7 +21,7 @@ const COLOURINGS: readonly PlaneColouring[] = ['plane', 'class', 'normal', 'offs
 function start(): void {
   const store = new SettingsStore();
   const viewer = new Viewer(store);
-  const panels = setUpPanels(panel => panel === 'planes' && viewer.list.show(viewer.planes, null));
+  const panels = setUpPanels(open => viewer.panelChanged(open));
   const showHelp = helpDialog();
   controlsPanel(byId('controls'), store, licensesDialog());
 

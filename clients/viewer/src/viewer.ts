@@ -14,6 +14,7 @@ import type { Settings, SettingsStore } from './settings';
 import { byId, setText } from './ui/dom';
 import { Inspector } from './ui/inspector';
 import { showLegend, showScaleBar } from './ui/legend';
+import { isNarrow, type PanelName } from './ui/panels';
 import { PlaneList } from './ui/plane_list';
 
 const CELLS_PERIOD_MS = 200;
@@ -113,6 +114,12 @@ export class Viewer {
     this.scene.fit();
   }
 
+  panelChanged(open: PanelName | null): void {
+    if (open === 'planes') this.list.show(this.visible, this.selection.selectedId);
+    this.viewport.coveredLeft = open && !isNarrow() ? byId(open).getBoundingClientRect().right : 0;
+    this.follow(true);
+  }
+
   get isDark(): boolean {
     return this.theme().name === 'dark';
   }
@@ -196,11 +203,11 @@ export class Viewer {
   }
 
   /** A map that grows stays in view until somebody takes the view in hand. */
-  private follow(): void {
+  private follow(anew = false): void {
     const bounds = this.follows ? boundsOf(this.visible) : null;
     if (!bounds) return;
     const size = Math.hypot(...sizeOf(bounds));
-    if (size > this.fittedSize * GROWN || size < this.fittedSize / 2) {
+    if (anew || size > this.fittedSize * GROWN || size < this.fittedSize / 2) {
       this.fittedSize = size;
       this.viewport.fit(bounds);
     }

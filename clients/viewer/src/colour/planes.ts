@@ -1,5 +1,5 @@
 import { PLANE_CLASSES, type PlaneRecord } from '../api/planes';
-import { niceCeiling, oklch, quantile, type Rgb, sequential } from './scale';
+import { niceSteps, oklch, quantile, type Rgb, sequential } from './scale';
 import type { Theme } from './theme';
 
 /** What planes are coloured by. */
@@ -9,7 +9,8 @@ export interface ScaleLegend {
   readonly kind: 'scale';
   readonly title: string;
   readonly unit: string;
-  readonly maximum: number; // in the unit
+  readonly minimum: number; // in the unit; 0: the scale is linear, else logarithmic
+  readonly maximum: number;
 }
 
 export interface SwatchLegend {
@@ -29,7 +30,7 @@ export const toDegrees = (rad: number): number => (rad * 180) / Math.PI;
 
 /** Neighbours in id are far apart in hue: 137.5°, the golden angle. */
 export function planeColour(id: number, theme: Theme): Rgb {
-  return oklch(theme.planeLightness + 0.06 * ((id % 3) - 1), 0.105, (id * 137.508) % 360);
+  return oklch(theme.planeLightness + 0.06 * ((id % 3) - 1), 0.09, (id * 137.508) % 360);
 }
 
 function byDeviation(
@@ -38,11 +39,17 @@ function byDeviation(
   unit: string,
   inUnit: (p: PlaneRecord) => number,
 ): PlaneColours {
-  const maximum = niceCeiling(quantile(planes.map(inUnit), 0.95));
-  return { of: plane => sequential(inUnit(plane) / maximum), legend: { kind: 'scale', title, unit, maximum } };
+  const values = planes.map(inUnit).filter(value => value > 0);
+  const maximum = niceSteps(quantile(values, 0.98) || 1).ceiling;
+  const minimum = Math.min(niceSteps(quantile(values, 0.02) || maximum).floor, maximum / 10);
+  const decades = Math.log10(maximum / minimum);
+  return {
+    of: plane => sequential(Math.log10(Math.max(inUnit(plane), minimum) / minimum) / decades),
+    legend: { kind: 'scale', title, unit, minimum, maximum },
+  };
 }
 
-/** Colours of these planes. The ends of a scale follow the planes: 0 to what 95 of 100 stay below. */
+/** Colours of these planes. Scales are logarithmic, as deviations span decades; all but 2 of 100 planes lie within each end. */
 export function planeColours(colouring: PlaneColouring, planes: readonly PlaneRecord[], theme: Theme): PlaneColours {
   switch (colouring) {
     case 'plane':
@@ -53,8 +60,8 @@ export function planeColours(colouring: PlaneColouring, planes: readonly PlaneRe
       return { of: plane => theme.classes[plane.class], legend: { kind: 'swatches', title: 'Class', swatches } };
     }
     case 'normal':
-      return byDeviation(planes, 'Normal, standard deviation', '°', plane => toDegrees(plane.normalDeviation));
+      return byDeviation(planes, '\u00b1 of the normal', '°', plane => toDegrees(plane.normalDeviation));
     case 'offset':
-      return byDeviation(planes, 'Offset, standard deviation', 'mm', plane => 1000 * plane.offsetDeviation);
+      return byDeviation(planes, '\u00b1 of the offset', 'mm', plane => 1000 * plane.offsetDeviation);
   }
 }

@@ -9,18 +9,19 @@ export function mix(a: Rgb, b: Rgb, share: number): Rgb {
 }
 
 /**
- * Stops of "cividis" (Nuñez, Anderton and Renslow, 2018): grows evenly in lightness and reads alike for people who see red and
- * green alike. Its darkest blue is left out, which would be lost on a dark background.
+ * Stops of "viridis" (Smith and van der Walt, 2015) without its darkest fifth, which would be lost on a dark background: grows
+ * evenly in lightness, and reads alike for people who see red and green alike.
  */
 const STOPS: readonly Rgb[] = [
-  [33, 66, 120],
-  [73, 86, 119],
-  [101, 107, 122],
-  [128, 128, 128],
-  [157, 149, 119],
-  [187, 172, 104],
-  [219, 196, 83],
-  [253, 231, 55],
+  [65, 68, 135],
+  [53, 95, 141],
+  [42, 120, 142],
+  [33, 145, 140],
+  [34, 168, 132],
+  [68, 191, 112],
+  [122, 209, 81],
+  [189, 223, 38],
+  [253, 231, 37],
 ];
 
 /** A colour for 0 (certain) to 1 (uncertain); outside: the ends. */
@@ -30,12 +31,14 @@ export function sequential(share: number): Rgb {
   return mix(STOPS[low]!, STOPS[low + 1]!, at - low);
 }
 
-/** The least of 1, 2 and 5 times a power of ten that is not below the value. */
-export function niceCeiling(value: number): number {
-  if (!(value > 0)) return 1;
+/** The steps 1, 2, 5, 10, 20, ... (and 0.5, 0.2, ...) next to a value: the least not below it and the greatest not above. */
+export function niceSteps(value: number): { floor: number; ceiling: number } {
   const power = 10 ** Math.floor(Math.log10(value));
-  const factor = [1, 2, 5, 10].find(step => step * power >= value * (1 - 1e-9)) ?? 10;
-  return Number((factor * power).toPrecision(1));
+  const steps = [0.5, 1, 2, 5, 10].map(step => Number((step * power).toPrecision(1)));
+  return {
+    floor: steps.findLast(step => step <= value * (1 + 1e-9))!,
+    ceiling: steps.find(step => step >= value * (1 - 1e-9))!,
+  };
 }
 
 /** The value below which the share of the values lies; 0 of none. */

@@ -4,8 +4,10 @@ import type { CellStore } from '../map/cells';
 import { CELL_SCALE_DEG } from './cells_layer';
 import { setColour } from './colours';
 
-const MOST_CONES = 4000;
-const HEIGHT_M = 0.09;
+const MOST_CONES = 1500;
+const HEIGHT_M = 0.18;
+/** Cones open by so many times the standard deviation: a degree could not be seen. The page says so. */
+export const CONE_FACTOR = 5;
 const WIDEST_RAD = (60 * Math.PI) / 180;
 
 /** Open cone of height 1 and radius 1, its apex at the origin, opening along +z. */
@@ -16,7 +18,7 @@ function unitCone(): ConeGeometry {
   return cone;
 }
 
-/** For each cell of one plane a cone about its normal whose half angle is the normal's standard deviation. */
+/** For each cell of one plane a cone about its normal whose half angle is a multiple of the normal's standard deviation. */
 export class ConesLayer {
   readonly object = new InstancedMesh(
     unitCone(),
@@ -49,7 +51,7 @@ export class ConesLayer {
 
   private place(i: number, [x, y, z, nx, ny, nz, deviation]: Float32Array): void {
     const rotation = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(nx, ny, nz));
-    const radius = HEIGHT_M * Math.tan(Math.min(deviation!, WIDEST_RAD));
+    const radius = HEIGHT_M * Math.tan(Math.min(CONE_FACTOR * deviation!, WIDEST_RAD));
     const size = new Vector3(radius, radius, HEIGHT_M);
     const colour = new Color();
     setColour(colour, sequential(deviation! / ((CELL_SCALE_DEG * Math.PI) / 180)));

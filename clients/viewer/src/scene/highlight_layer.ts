@@ -1,7 +1,7 @@
 import {
+  BackSide,
   BufferAttribute,
   BufferGeometry,
-  DoubleSide,
   Group,
   LineBasicMaterial,
   LineSegments,
@@ -13,14 +13,15 @@ import type { Rgb } from '../colour/scale';
 import { tessellate } from '../map/tessellate';
 import { setColour } from './colours';
 
-/** One plane marked: tinted from both sides, and its outline seen through everything. */
+/** One plane marked: tinted, from behind so faintly that one still sees through, and its outline seen through everything. */
 export class HighlightLayer {
   readonly object = new Group();
-  private readonly tint = new MeshBasicMaterial({
+  private readonly front = new MeshBasicMaterial({ transparent: true, opacity: 0.4, depthWrite: false });
+  private readonly back = new MeshBasicMaterial({
     transparent: true,
-    opacity: 0.38,
-    side: DoubleSide,
+    opacity: 0.09,
     depthWrite: false,
+    side: BackSide,
   });
   private readonly line = new LineBasicMaterial({ depthTest: false, transparent: true });
 
@@ -28,20 +29,14 @@ export class HighlightLayer {
     for (const part of this.object.children) (part as Mesh).geometry.dispose();
     this.object.clear();
     if (!plane) return;
-    setColour(this.tint.color, colour);
-    setColour(this.line.color, colour);
+    for (const material of [this.front, this.back, this.line]) setColour(material.color, colour);
     const { positions, triangles, segments } = tessellate(plane);
     const shared = new BufferAttribute(positions, 3);
-    const mesh = new Mesh(new BufferGeometry(), this.tint);
-    const outline = new LineSegments(new BufferGeometry(), this.line);
-    for (const [part, index] of [
-      [mesh, triangles],
-      [outline, segments],
-    ] as const) {
-      part.geometry.setAttribute('position', shared);
-      part.geometry.setIndex(new BufferAttribute(index, 1));
-    }
+    const part = (index: Uint32Array) =>
+      new BufferGeometry().setAttribute('position', shared).setIndex(new BufferAttribute(index, 1));
+    const surface = part(triangles);
+    const outline = new LineSegments(part(segments), this.line);
     outline.renderOrder = 10;
-    this.object.add(mesh, outline);
+    this.object.add(new Mesh(surface, this.front), new Mesh(surface, this.back), outline);
   }
 }

@@ -2,6 +2,7 @@ import type { Scan } from '../api/binary';
 import type { Pose } from '../api/events';
 import type { PlaneRecord } from '../api/planes';
 import { type PlaneColours, planeColours } from '../colour/planes';
+import { mix } from '../colour/scale';
 import type { Theme } from '../colour/theme';
 import { boundsOf } from '../map/bounds';
 import type { CellStore } from '../map/cells';
@@ -21,6 +22,7 @@ import type { Viewport } from './viewport';
 import { WallsLayer } from './walls_layer';
 
 const WALL_REACH_PX = 9;
+const DIMMED = 0.7;
 const ALL_CELLS = 2_000_000;
 
 /** What is to be seen. `planes` are those that the filter lets through. */
@@ -79,7 +81,8 @@ export class MapScene {
   }
 
   apply(settings: Settings): void {
-    const recolour = settings.colouring !== this.settings.colouring;
+    const recolour =
+      settings.colouring !== this.settings.colouring || settings.layers.cells !== this.settings.layers.cells;
     this.settings = settings;
     const { layers } = settings;
     this.planes.surfacesVisible = layers.planes;
@@ -138,10 +141,16 @@ export class MapScene {
     return pickPlane(this.shown.planes, origin, direction);
   }
 
+  /** Behind cells planes step back. */
+  private surfaceColour(): PlaneColours['of'] {
+    const { of } = this.colours;
+    return this.settings.layers.cells ? plane => mix(of(plane), this.theme.background, DIMMED) : of;
+  }
+
   private fill(): void {
     const { planes, cells, selected, second, measurement, isFiltered } = this.shown;
     if (this.dirty.has('planes')) {
-      this.planes.show(planes, this.colours.of);
+      this.planes.show(planes, this.surfaceColour());
       this.walls.show(planes, this.colours.of);
       const bounds = boundsOf(planes);
       if (bounds) this.grid.show(bounds);

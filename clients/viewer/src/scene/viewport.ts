@@ -13,6 +13,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Vec3 } from '../api/check';
 import type { Rgb } from '../colour/scale';
 import { type Bounds, centreOf, sizeOf } from '../map/bounds';
+import { fittingDistance } from './fitting';
 import { moveControls, setUpControls } from './navigation';
 import { type Quality, QualityControl } from './quality';
 
@@ -27,6 +28,7 @@ export interface Ray {
 
 const REST_MS = 120;
 const FIELD_OF_VIEW_DEG = 50;
+const MARGIN = 1.08;
 
 /** Draws the scene when something has changed, and never else; less of it while the view moves. */
 export class Viewport {
@@ -53,6 +55,7 @@ export class Viewport {
   private moving = false;
   private lastFrame_ms = 0;
   private kind: ViewKind = 'orbit';
+  private covered = 0; // pixels at the left
 
   /** @throws Error where the browser has no WebGL */
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -108,19 +111,24 @@ export class Viewport {
   /** Brings the box into view, from where the camera looks now. */
   fit(bounds: Bounds): void {
     const centre = new Vector3(...centreOf(bounds));
-    const [width, depth, height] = sizeOf(bounds);
-    const aspect = this.aspect();
-    const direction = this.perspective.position.clone().sub(this.controls.target).normalize();
-    const radius = Math.max(1, Math.hypot(width, depth, height) / 2);
-    const half = (FIELD_OF_VIEW_DEG / 2) * (Math.PI / 180);
-    const distance = (radius * 0.92) / Math.sin(Math.min(half, Math.atan(Math.tan(half) * aspect)));
+    const offset = this.perspective.position.clone().sub(this.controls.target).normalize();
+    const slope = Math.tan((FIELD_OF_VIEW_DEG / 2) * (Math.PI / 180));
+    const distance = MARGIN * fittingDistance(bounds, offset, slope * this.freeAspect(), slope);
     this.controls.target.copy(centre);
-    this.perspective.position.copy(centre).addScaledVector(direction, distance);
+    this.perspective.position.copy(centre).addScaledVector(offset, Math.max(1, distance));
+    const [width, depth] = sizeOf(bounds);
     this.orthographic.position.set(centre.x, centre.y, centre.z + 500);
     this.orthographic.zoom = 1;
-    this.setPlanHeight(1.12 * Math.max(depth, width / aspect, 1));
+    this.setPlanHeight(MARGIN * Math.max(depth, width / this.freeAspect(), 1));
     this.controls.update();
     this.invalidate();
+  }
+
+  /** Keeps what is looked at in the middle of what a panel of this width at the left leaves free. */
+  set coveredLeft(pixels: number) {
+    if (pixels === this.covered) return;
+    this.covered = pixels;
+    this.resized();
   }
 
   /** Moves by keys: shares of the view's height, or of a turn. */
@@ -151,6 +159,10 @@ export class Viewport {
     return (this.orthographic.top - this.orthographic.bottom) / this.orthographic.zoom / this.canvas.clientHeight;
   }
 
+  private freeAspect(): number {
+    return Math.max(0.2, (this.canvas.clientWidth - this.covered) / Math.max(1, this.canvas.clientHeight));
+  }
+
   private aspect(): number {
     return this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
   }
@@ -164,10 +176,12 @@ export class Viewport {
   private updateCameras(): void {
     const aspect = this.aspect();
     this.perspective.aspect = aspect;
-    this.perspective.updateProjectionMatrix();
     this.orthographic.right = this.orthographic.top * aspect;
     this.orthographic.left = -this.orthographic.right;
-    this.orthographic.updateProjectionMatrix();
+    const { clientWidth, clientHeight } = this.canvas;
+    for (const camera of [this.perspective, this.orthographic]) {
+      camera.setViewOffset(clientWidth, clientHeight, -this.covered / 2, 0, clientWidth, clientHeight);
+    }
   }
 
   private resized(): void {

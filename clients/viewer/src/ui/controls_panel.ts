@@ -1,6 +1,7 @@
 import { PLANE_CLASSES, type PlaneClass } from '../api/planes';
 import { exportUrl } from '../api/requests';
 import type { PlaneColouring } from '../colour/planes';
+import { CONE_FACTOR } from '../scene/cones_layer';
 import { LAYERS, type Layer, type Settings, type SettingsStore, type ThemeChoice } from '../settings';
 import { choice } from './choice';
 import { el } from './dom';
@@ -8,8 +9,8 @@ import { el } from './dom';
 const LAYER_LABELS: Readonly<Record<Layer, readonly [label: string, key: string]>> = {
   planes: ['Planes', 'P'],
   outlines: ['Outlines', 'O'],
-  cells: ['Cells, by deviation of the normal', 'C'],
-  cones: ['Cones of the selected plane', 'U'],
+  cells: ['Cells', 'C'],
+  cones: [`Cones of the selected, ${CONE_FACTOR} \u00d7 \u03c3`, 'U'],
   robot: ['Sensor and its path', 'R'],
   scan: ['Last scan', 'S'],
   grid: ['Grid', 'G'],

@@ -1,15 +1,15 @@
-import type { Legend } from '../colour/planes';
+import type { Legend, ScaleLegend } from '../colour/planes';
 import { sequential, toCss } from '../colour/scale';
 import { CELL_SCALE_DEG } from '../scene/cells_layer';
 import { byId, el, setText } from './dom';
 
 const STEPS = 24;
 const LONGEST_BAR_PX = 160;
-
 const cellLegend: Legend = {
   kind: 'scale',
-  title: 'Cells: normal, standard deviation',
+  title: 'Cells: \u00b1 of the normal',
   unit: '°',
+  minimum: 0,
   maximum: CELL_SCALE_DEG,
 };
 
@@ -35,11 +35,14 @@ function element(legend: Legend): HTMLElement {
   const bar = el('div', { class: 'ramp' });
   const stops = Array.from({ length: STEPS + 1 }, (_, i) => toCss(sequential(i / STEPS)));
   bar.style.background = `linear-gradient(90deg, ${stops.join(', ')})`;
-  const ticks = [0, 0.5, 1].map(share => Number((share * legend.maximum).toPrecision(2)));
-  const labels = ticks.map((tick, i) =>
-    el('span', {}, `${tick}${i === 2 ? '+' : ''} ${legend.unit}`.replace(' °', '°')),
-  );
+  const labels = ticksOf(legend).map(tick => el('span', {}, `${tick}${legend.unit === '°' ? '°' : ` ${legend.unit}`}`));
   return el('div', { class: 'scale' }, el('h2', {}, legend.title), bar, el('div', { class: 'ticks' }, ...labels));
+}
+
+/** Both ends and the middle, in the middle of the ramp: on a logarithmic scale the geometric mean. */
+function ticksOf({ minimum, maximum }: ScaleLegend): number[] {
+  const middle = minimum > 0 ? Math.sqrt(minimum * maximum) : (minimum + maximum) / 2;
+  return [minimum, middle, maximum].map(tick => Number(tick.toPrecision(2)));
 }
 
 /** The longest of 1, 2, 5, 10, ... that fits. */
