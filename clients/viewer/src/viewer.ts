@@ -116,12 +116,25 @@ export class Viewer {
 
   panelChanged(open: PanelName | null): void {
     if (open === 'planes') this.list.show(this.visible, this.selection.selectedId);
-    this.viewport.coveredLeft = open && !isNarrow() ? byId(open).getBoundingClientRect().right : 0;
+    this.coverByPanels();
     this.follow(true);
   }
 
   get isDark(): boolean {
     return this.theme().name === 'dark';
+  }
+
+  /** What panels cover: at the left on wide pages, below on phones. */
+  private coverByPanels(): void {
+    const open = ['controls', 'planes', 'inspector'].map(id => byId(id)).filter(panel => !panel.hidden);
+    const boxes = open.map(panel => panel.getBoundingClientRect());
+    if (isNarrow()) {
+      const lowerEdge = byId('view').getBoundingClientRect().bottom;
+      this.viewport.cover(0, Math.max(0, ...boxes.map(box => lowerEdge - box.top)));
+    } else {
+      const atLeft = boxes.filter((_, i) => open[i]!.id !== 'inspector');
+      this.viewport.cover(Math.max(0, ...atLeft.map(box => box.right)), 0);
+    }
   }
 
   private theme(): Theme {
@@ -160,6 +173,7 @@ export class Viewer {
       newestUtime: this.map.newestUtime,
       goneId: this.selection.goneId,
     });
+    if (isNarrow()) this.coverByPanels();
     this.list.show(this.visible, this.selection.selectedId);
     if (parts.includes('planes')) {
       this.showLegends();
@@ -220,7 +234,7 @@ export class Viewer {
   }
 
   private async loadCells(): Promise<void> {
-    this.cells.apply(await fetchCells(this.cells.revision));
+    if (!this.cells.apply(await fetchCells(this.cells.revision))) this.cellPoller.want();
     if (!this.store.current.paused) this.refresh('cells', 'selection');
   }
 }

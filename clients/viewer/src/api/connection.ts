@@ -21,7 +21,7 @@ const LONGEST_WAIT_MS = 8000;
 
 /** Waits before the next try: twice as long each time, a little apart for each page so that not all come at once. */
 export function backOff_ms(failures: number, random: number): number {
-  return Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** Math.min(failures, 10)) * (0.8 + 0.4 * random);
+  return Math.round(Math.min(LONGEST_WAIT_MS, FIRST_WAIT_MS * 2 ** Math.min(failures, 10)) * (0.8 + 0.4 * random));
 }
 
 /** The stream of events, opened again whenever it ends. */

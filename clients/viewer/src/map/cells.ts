@@ -7,8 +7,13 @@ export class CellStore {
   count = 0;
   private readonly blocks = new Map<string, CellBlock>();
 
-  apply(update: CellsUpdate): void {
-    if (update.full || update.epoch !== this.epoch) this.clear();
+  /** Returns false, and knows nothing any more, if the update goes on from another map than is known: ask for all then. */
+  apply(update: CellsUpdate): boolean {
+    if (update.full) this.clear();
+    else if (update.epoch !== this.epoch) {
+      this.clear();
+      return false;
+    }
     for (const block of update.blocks) {
       this.count += block.planeIds.length - (this.blocks.get(block.key)?.planeIds.length ?? 0);
       if (block.planeIds.length === 0) this.blocks.delete(block.key);
@@ -16,6 +21,7 @@ export class CellStore {
     }
     this.epoch = update.epoch;
     this.revision = update.revision;
+    return true;
   }
 
   clear(): void {

@@ -23,7 +23,6 @@ import { WallsLayer } from './walls_layer';
 
 const WALL_REACH_PX = 9;
 const DIMMED = 0.7;
-const ALL_CELLS = 2_000_000;
 
 /** What is to be seen. `planes` are those that the filter lets through. */
 export interface Shown {
@@ -50,7 +49,7 @@ export class MapScene {
   private readonly marks = [new HighlightLayer(), new HighlightLayer()] as const;
   private readonly ruler = new MeasureLayer();
   private readonly dirty = new Set<Part>();
-  private cellBudget = ALL_CELLS;
+  private cellBudget = Number.POSITIVE_INFINITY;
   private outlinesWanted = true;
 
   constructor(
@@ -64,9 +63,9 @@ export class MapScene {
     viewport.scene.add(...[...layers, ...this.marks, this.ruler].map(layer => layer.object));
     viewport.beforeFrame = () => this.fill();
     viewport.onQuality = quality => {
-      this.cellBudget = quality?.cells ?? ALL_CELLS;
+      this.cellBudget = quality.cells;
       this.cells.budget = this.cellBudget;
-      this.planes.outlinesVisible = this.outlinesWanted && (quality?.outlines ?? true);
+      this.planes.outlinesVisible = this.outlinesWanted && quality.outlines;
     };
     this.setTheme(theme);
     this.apply(settings);

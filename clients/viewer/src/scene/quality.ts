@@ -1,29 +1,37 @@
-/** How much is drawn while the view moves. At rest all of it is. */
+/** How much is drawn. */
 export interface Quality {
   readonly pixelRatio: number; // of the screen's own
   readonly cells: number; // at most
   readonly outlines: boolean;
 }
 
-const LEVELS: readonly Quality[] = [
+/** At rest: all there is. */
+export const FULL: Quality = { pixelRatio: 1, cells: Number.POSITIVE_INFINITY, outlines: true };
+/** When nothing has changed for a while, where edges are not smoothed by the graphics processor: by drawing them larger. */
+export const SMOOTH: Quality = { ...FULL, pixelRatio: 2 };
+
+/** While the view moves. */
+export const LEVELS: readonly Quality[] = [
   { pixelRatio: 1, cells: 400_000, outlines: true },
   { pixelRatio: 1, cells: 100_000, outlines: true },
   { pixelRatio: 0.75, cells: 40_000, outlines: true },
   { pixelRatio: 0.6, cells: 16_000, outlines: true },
   { pixelRatio: 0.5, cells: 10_000, outlines: true },
-  { pixelRatio: 0.4, cells: 6_000, outlines: false },
-  { pixelRatio: 0.3, cells: 3_000, outlines: false },
+  { pixelRatio: 0.4, cells: 5_000, outlines: false },
 ];
-const SLOW_MS = 27;
+const SLOW_MS = 29; // 30 frames a second are the aim
 const FAST_MS = 18;
-const SLOW_FRAMES = 3;
-const FAST_FRAMES = 40;
+const WINDOW = 6; // frames that are judged together, by their median
+const WORTH = 0.9; // a level that takes more than this share of the time of the one above is not worth what it leaves out
+const PATIENCE = 8; // windows until a level is tried again
 
 /** Finds the level at which frames come often enough, from the times between them. */
 export class QualityControl {
   private level: number;
-  private slow = 0;
-  private fast = 0;
+  private window: number[] = [];
+  private above_ms = Number.POSITIVE_INFINITY; // median of the level above, when it was left as too slow
+  private fastWindows = 0;
+  private waitWindows = 0;
 
   /** @param software there is no graphics processor: begin with little */
   constructor(software: boolean) {
@@ -36,15 +44,27 @@ export class QualityControl {
 
   /** Takes note of the time since the last frame of one movement. */
   frame(elapsed_ms: number): void {
-    this.slow = elapsed_ms > SLOW_MS ? this.slow + 1 : 0;
-    this.fast = elapsed_ms < FAST_MS ? this.fast + 1 : 0;
-    if (this.slow >= SLOW_FRAMES && this.level < LEVELS.length - 1) this.go(+1);
-    if (this.fast >= FAST_FRAMES && this.level > 0) this.go(-1);
+    this.window.push(elapsed_ms);
+    if (this.window.length < WINDOW) return;
+    const median = this.window.sort((a, b) => a - b)[WINDOW / 2]!;
+    this.window = [];
+    this.judge(median);
   }
 
-  private go(step: number): void {
-    this.level += step;
-    this.slow = 0;
-    this.fast = 0;
+  private judge(median_ms: number): void {
+    this.fastWindows = median_ms < FAST_MS ? this.fastWindows + 1 : 0;
+    if (this.waitWindows > 0) --this.waitWindows;
+    if (median_ms > SLOW_MS && median_ms > WORTH * this.above_ms) {
+      this.level -= 1; // what was left out did not help: something else is slow
+      this.above_ms = Number.POSITIVE_INFINITY;
+      this.waitWindows = PATIENCE;
+    } else if (median_ms > SLOW_MS && this.level < LEVELS.length - 1 && this.waitWindows === 0) {
+      this.level += 1;
+      this.above_ms = median_ms;
+    } else if (this.fastWindows >= PATIENCE && this.level > 0) {
+      this.level -= 1;
+      this.above_ms = Number.POSITIVE_INFINITY;
+      this.fastWindows = 0;
+    }
   }
 }

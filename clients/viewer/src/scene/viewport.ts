@@ -15,7 +15,7 @@ import type { Rgb } from '../colour/scale';
 import { type Bounds, centreOf, sizeOf } from '../map/bounds';
 import { fittingDistance } from './fitting';
 import { moveControls, setUpControls } from './navigation';
-import { type Quality, QualityControl } from './quality';
+import { FULL, type Quality, QualityControl, SMOOTH } from './quality';
 
 ColorManagement.enabled = false; // colours go to the screen as they are
 
@@ -27,6 +27,7 @@ export interface Ray {
 }
 
 const REST_MS = 120;
+const SMOOTH_MS = 350;
 const FIELD_OF_VIEW_DEG = 50;
 const MARGIN = 1.08;
 
@@ -37,8 +38,8 @@ export class Viewport {
   frames = 0;
   /** Called before each frame. */
   beforeFrame: () => void = () => {};
-  /** Called before each frame that is drawn with another quality than the one before; null: all there is. */
-  onQuality: (quality: Quality | null) => void = () => {};
+  /** Called before each frame that is drawn with another quality than the one before. */
+  onQuality: (quality: Quality) => void = () => {};
   /** Called when a hand, not the page, begins to move the view. */
   onUserMove: () => void = () => {};
   /** Called after each frame. */
@@ -49,19 +50,26 @@ export class Viewport {
   private readonly orthographic = new OrthographicCamera(-1, 1, 1, -1, -1000, 2000);
   private readonly controls: OrbitControls;
   private readonly quality: QualityControl;
-  private drawn: Quality | null | undefined = undefined; // the quality of the last frame
+  private drawn: Quality | null = null; // the quality of the last frame; null: the size of the canvas has changed since
   private pending = 0;
   private restTimer = 0;
+  private readonly smooths: boolean; // edges, by a larger picture
+  private smoothTimer = 0;
+  private smoothing = false;
   private moving = false;
   private lastFrame_ms = 0;
   private kind: ViewKind = 'orbit';
-  private covered = 0; // pixels at the left
+  private covered = { left: 0, bottom: 0 }; // pixels
 
   /** @throws Error where the browser has no WebGL */
   constructor(private readonly canvas: HTMLCanvasElement) {
     const software = isSoftware();
     this.quality = new QualityControl(software);
-    this.renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: 'low-power' });
+    this.smooths = software;
+    // Opaque, which three would not ask for: what lies below need not be drawn through it.
+    const context = canvas.getContext('webgl2', { alpha: false, antialias: !software, stencil: false });
+    if (!context) throw new Error('this browser has no WebGL 2');
+    this.renderer = new WebGLRenderer({ canvas, context, alpha: false });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.perspective.up.set(0, 0, 1);
     this.perspective.position.set(-6, -8, 9);
@@ -111,23 +119,24 @@ export class Viewport {
   /** Brings the box into view, from where the camera looks now. */
   fit(bounds: Bounds): void {
     const centre = new Vector3(...centreOf(bounds));
+    const free = this.free();
     const offset = this.perspective.position.clone().sub(this.controls.target).normalize();
     const slope = Math.tan((FIELD_OF_VIEW_DEG / 2) * (Math.PI / 180));
-    const distance = MARGIN * fittingDistance(bounds, offset, slope * this.freeAspect(), slope);
+    const distance = MARGIN * fittingDistance(bounds, offset, slope * free.width, slope * free.height);
     this.controls.target.copy(centre);
     this.perspective.position.copy(centre).addScaledVector(offset, Math.max(1, distance));
     const [width, depth] = sizeOf(bounds);
     this.orthographic.position.set(centre.x, centre.y, centre.z + 500);
     this.orthographic.zoom = 1;
-    this.setPlanHeight(MARGIN * Math.max(depth, width / this.freeAspect(), 1));
+    this.setPlanHeight(MARGIN * Math.max(depth / free.height, width / free.width, 1));
     this.controls.update();
     this.invalidate();
   }
 
-  /** Keeps what is looked at in the middle of what a panel of this width at the left leaves free. */
-  set coveredLeft(pixels: number) {
-    if (pixels === this.covered) return;
-    this.covered = pixels;
+  /** Keeps what is looked at in the middle of what panels at the left and the lower edge leave free. Pixels. */
+  cover(left: number, bottom: number): void {
+    if (left === this.covered.left && bottom === this.covered.bottom) return;
+    this.covered = { left, bottom };
     this.resized();
   }
 
@@ -159,8 +168,11 @@ export class Viewport {
     return (this.orthographic.top - this.orthographic.bottom) / this.orthographic.zoom / this.canvas.clientHeight;
   }
 
-  private freeAspect(): number {
-    return Math.max(0.2, (this.canvas.clientWidth - this.covered) / Math.max(1, this.canvas.clientHeight));
+  /** Width and height of what no panel covers, as shares of the canvas's height. */
+  private free(): { width: number; height: number } {
+    const { clientWidth, clientHeight } = this.canvas;
+    const share = (pixels: number) => Math.max(0.2, pixels / Math.max(1, clientHeight));
+    return { width: share(clientWidth - this.covered.left), height: share(clientHeight - this.covered.bottom) };
   }
 
   private aspect(): number {
@@ -180,13 +192,20 @@ export class Viewport {
     this.orthographic.left = -this.orthographic.right;
     const { clientWidth, clientHeight } = this.canvas;
     for (const camera of [this.perspective, this.orthographic]) {
-      camera.setViewOffset(clientWidth, clientHeight, -this.covered / 2, 0, clientWidth, clientHeight);
+      camera.setViewOffset(
+        clientWidth,
+        clientHeight,
+        -this.covered.left / 2,
+        this.covered.bottom / 2,
+        clientWidth,
+        clientHeight,
+      );
     }
   }
 
   private resized(): void {
     this.updateCameras();
-    this.drawn = undefined; // the buffer's size is set anew with the next frame
+    this.drawn = null;
     this.invalidate();
   }
 
@@ -206,18 +225,26 @@ export class Viewport {
     if (this.moving && this.drawn) this.quality.frame(now_ms - this.lastFrame_ms);
     this.lastFrame_ms = now_ms;
     this.beforeFrame();
-    this.setQuality(this.moving ? this.quality.current : null);
+    this.setQuality(this.moving ? this.quality.current : this.smoothing ? SMOOTH : FULL);
     this.renderer.render(this.scene, this.controls.object);
     ++this.frames;
     this.onFrame();
+    window.clearTimeout(this.smoothTimer);
+    if (this.smooths && !this.moving && !this.smoothing) {
+      this.smoothTimer = window.setTimeout(() => {
+        this.smoothing = true;
+        this.invalidate();
+      }, SMOOTH_MS);
+    }
+    this.smoothing = false;
   }
 
-  private setQuality(quality: Quality | null): void {
+  private setQuality(quality: Quality): void {
     if (quality === this.drawn) return;
     this.drawn = quality;
     const own = Math.min(window.devicePixelRatio, 2);
     const { clientWidth, clientHeight } = this.canvas;
-    this.renderer.setPixelRatio(own * (quality?.pixelRatio ?? 1));
+    this.renderer.setPixelRatio(Math.min(2, own * quality.pixelRatio));
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.onQuality(quality);
   }

@@ -10,7 +10,7 @@ const LAYER_LABELS: Readonly<Record<Layer, readonly [label: string, key: string]
   planes: ['Planes', 'P'],
   outlines: ['Outlines', 'O'],
   cells: ['Cells', 'C'],
-  cones: [`Cones of the selected, ${CONE_FACTOR} \u00d7 \u03c3`, 'U'],
+  cones: [`Cones of uncertainty, ${CONE_FACTOR} \u00d7 \u03c3`, 'U'],
   robot: ['Sensor and its path', 'R'],
   scan: ['Last scan', 'S'],
   grid: ['Grid', 'G'],
