@@ -191,6 +191,7 @@ export class Viewer {
     this.refresh(...((planesChanged ? ['planes', 'cells', 'selection'] : ['cells', 'selection']) as Part[]));
     this.showLegends();
     this.wantCells();
+    if (settings.view !== before.view) this.follow(true);
     if (settings.layers.scan && !before.layers.scan) this.scanPoller.want();
   }
 
@@ -223,7 +224,7 @@ export class Viewer {
     const size = Math.hypot(...sizeOf(bounds));
     if (anew || size > this.fittedSize * GROWN || size < this.fittedSize / 2) {
       this.fittedSize = size;
-      this.viewport.fit(bounds);
+      this.scene.fit();
     }
   }
 

@@ -4,7 +4,7 @@ import { type CellStore, spreadStride } from '../map/cells';
 
 /** A cell's deviation of the normal at which its colour is the last of the scale. */
 export const CELL_SCALE_DEG = 15;
-const CELL_SIZE_M = 0.05;
+const CELL_SIZE_M = 0.065;
 
 /** Cells as points, coloured by the deviations of their normals. The first of them stand for all while the view moves. */
 export class CellsLayer {

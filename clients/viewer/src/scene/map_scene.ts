@@ -8,6 +8,7 @@ import { boundsOf } from '../map/bounds';
 import type { CellStore } from '../map/cells';
 import type { Measurement } from '../map/measure';
 import { pickPlane } from '../map/pick';
+import { tessellate } from '../map/tessellate';
 import { pickWall } from '../map/wall_lines';
 import type { Settings } from '../settings';
 import { CellsLayer } from './cells_layer';
@@ -23,6 +24,8 @@ import { WallsLayer } from './walls_layer';
 
 const WALL_REACH_PX = 9;
 const DIMMED = 0.7;
+const WALL_INK = 0.45; // share of the outlines' colour in walls seen from above
+const DOWNWARD = -0.5; // of a normal's z: a plan has no outlines of ceilings
 
 /** What is to be seen. `planes` are those that the filter lets through. */
 export interface Shown {
@@ -80,8 +83,11 @@ export class MapScene {
   }
 
   apply(settings: Settings): void {
-    const recolour =
-      settings.colouring !== this.settings.colouring || settings.layers.cells !== this.settings.layers.cells;
+    const before = this.settings;
+    const anew =
+      settings.colouring !== before.colouring ||
+      settings.layers.cells !== before.layers.cells ||
+      settings.view !== before.view;
     this.settings = settings;
     const { layers } = settings;
     this.planes.surfacesVisible = layers.planes;
@@ -94,7 +100,7 @@ export class MapScene {
     this.scan.object.visible = layers.scan;
     this.grid.object.visible = layers.grid;
     this.viewport.setView(settings.view);
-    if (recolour) this.update(this.shown, 'planes');
+    if (anew) this.update(this.shown, 'planes');
     this.viewport.invalidate();
   }
 
@@ -125,8 +131,7 @@ export class MapScene {
 
   /** Everything into view. */
   fit(): void {
-    const bounds = boundsOf(this.shown.planes);
-    if (bounds) this.viewport.fit(bounds);
+    this.viewport.fit(this.shown.planes.map(plane => tessellate(plane).positions));
   }
 
   /** The plane at a point of the page. */
@@ -149,8 +154,9 @@ export class MapScene {
   private fill(): void {
     const { planes, cells, selected, second, measurement, isFiltered } = this.shown;
     if (this.dirty.has('planes')) {
-      this.planes.show(planes, this.surfaceColour());
-      this.walls.show(planes, this.colours.of);
+      const fromAbove = this.settings.view === 'plan';
+      this.planes.show(planes, this.surfaceColour(), plane => !fromAbove || plane.normal[2] > DOWNWARD);
+      this.walls.show(planes, plane => mix(this.colours.of(plane), this.theme.outline, WALL_INK));
       const bounds = boundsOf(planes);
       if (bounds) this.grid.show(bounds);
     }

@@ -13,6 +13,8 @@ import { mix, type Rgb } from '../colour/scale';
 import { tessellate } from '../map/tessellate';
 import { setColour } from './colours';
 
+const NONE = new Uint32Array(0);
+
 /** Light from above and a little from the side, so that walls of one colour are told apart. */
 function shade(colour: Rgb, plane: PlaneRecord): Rgb {
   const [x, y, z] = plane.normal;
@@ -56,9 +58,17 @@ export class PlanesLayer {
     this.line.opacity = opacity;
   }
 
-  show(planes: readonly PlaneRecord[], colourOf: (plane: PlaneRecord) => Rgb): void {
+  /** @param outlined whether a plane's outline is drawn, too */
+  show(
+    planes: readonly PlaneRecord[],
+    colourOf: (plane: PlaneRecord) => Rgb,
+    outlined: (plane: PlaneRecord) => boolean,
+  ): void {
     this.planes = planes;
-    const parts = planes.map(tessellate);
+    const parts = planes.map(plane => {
+      const { positions, triangles, segments } = tessellate(plane);
+      return { positions, triangles, segments: outlined(plane) ? segments : NONE };
+    });
     const total = (count: (part: (typeof parts)[number]) => number) =>
       parts.reduce((sum, part) => sum + count(part), 0);
     const positions = new Float32Array(total(part => part.positions.length));

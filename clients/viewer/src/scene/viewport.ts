@@ -12,8 +12,7 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Vec3 } from '../api/check';
 import type { Rgb } from '../colour/scale';
-import { type Bounds, centreOf, sizeOf } from '../map/bounds';
-import { fittingDistance } from './fitting';
+import { fitView, type Points } from './fitting';
 import { moveControls, setUpControls } from './navigation';
 import { FULL, type Quality, QualityControl, SMOOTH } from './quality';
 
@@ -116,19 +115,20 @@ export class Viewport {
     this.resized();
   }
 
-  /** Brings the box into view, from where the camera looks now. */
-  fit(bounds: Bounds): void {
-    const centre = new Vector3(...centreOf(bounds));
+  /** Brings the points into view, from where the camera looks now. */
+  fit(clouds: readonly Points[]): void {
     const free = this.free();
-    const offset = this.perspective.position.clone().sub(this.controls.target).normalize();
     const slope = Math.tan((FIELD_OF_VIEW_DEG / 2) * (Math.PI / 180));
-    const distance = MARGIN * fittingDistance(bounds, offset, slope * free.width, slope * free.height);
-    this.controls.target.copy(centre);
-    this.perspective.position.copy(centre).addScaledVector(offset, Math.max(1, distance));
-    const [width, depth] = sizeOf(bounds);
-    this.orthographic.position.set(centre.x, centre.y, centre.z + 500);
+    const offset = this.perspective.position.clone().sub(this.controls.target).normalize();
+    const seen = fitView(clouds, offset, slope * free.width, slope * free.height);
+    const above = fitView(clouds, new Vector3(0, 0, 1), slope * free.width, slope * free.height);
+    if (!seen || !above) return;
+    const isPlan = this.kind === 'plan';
+    this.perspective.position.copy(seen.target).addScaledVector(offset, Math.max(1, MARGIN * seen.distance));
+    this.controls.target.copy(isPlan ? above.target : seen.target);
+    this.orthographic.position.copy(this.controls.target).setZ(this.controls.target.z + 500);
     this.orthographic.zoom = 1;
-    this.setPlanHeight(MARGIN * Math.max(depth / free.height, width / free.width, 1));
+    this.setPlanHeight(Math.max(1, MARGIN * 2 * slope * above.distance));
     this.controls.update();
     this.invalidate();
   }

@@ -1,4 +1,4 @@
-import { Vector3 } from 'three';
+import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import type { Vec3 } from '../../src/api/check';
 import { boundsOf } from '../../src/map/bounds';
@@ -6,7 +6,7 @@ import { hitPlane, pickPlane } from '../../src/map/pick';
 import { tessellate } from '../../src/map/tessellate';
 import { cross, dot, length, planeBasis, subtract } from '../../src/map/vector';
 import { pickWall, wallLines } from '../../src/map/wall_lines';
-import { fittingDistance } from '../../src/scene/fitting';
+import { fitView } from '../../src/scene/fitting';
 import { plane, rectangle } from './records';
 
 /** Area that the triangles cover, counted negative where they face away from the normal. */
@@ -159,10 +159,35 @@ describe('boundsOf', () => {
   it('is null of nothing', () => expect(boundsOf([])).toBeNull());
 });
 
-describe('fittingDistance', () => {
+describe('fitView', () => {
+  const corners = (x0: number) =>
+    new Float32Array([-1, 1].flatMap(x => [-1, 1].flatMap(y => [-1, 1].flatMap(z => [x + x0, y, z]))));
+  const above = new Vector3(0, 0, 1);
+
   it('has the nearest face of a cube fill the view from above', () => {
     // Half the face is 1, so 1 / tan = 2 from the face, which is 1 above the middle.
-    const cube = { min: [-1, -1, -1], max: [1, 1, 1] } as const;
-    expect(fittingDistance(cube, new Vector3(0, 0, 1), 0.5, 0.5)).toBeCloseTo(3, 12);
+    const fit = fitView([corners(0)], above, 0.5, 0.5)!;
+    expect(fit.distance).toBeCloseTo(3, 6);
+    expect(fit.target.toArray()).toEqual([0, 0, 0]);
   });
+
+  it('looks at the middle of what is there', () =>
+    expect(fitView([corners(5), corners(9)], above, 0.5, 0.5)!.target.x).toBeCloseTo(7, 6));
+
+  it('has all in view from aside, and something at each of two opposite edges', () => {
+    const offset = new Vector3(-0.5, -0.6, 0.7).normalize();
+    const fit = fitView([corners(3)], offset, 0.6, 0.4)!;
+    const camera = new PerspectiveCamera((2 * Math.atan(0.4) * 180) / Math.PI, 0.6 / 0.4);
+    camera.up.set(0, 0, 1);
+    camera.position.copy(fit.target).addScaledVector(offset, fit.distance);
+    camera.lookAt(fit.target);
+    camera.updateMatrixWorld();
+    const cloud = corners(3);
+    const seen = Array.from({ length: 8 }, (_, i) => new Vector3().fromArray(cloud, 3 * i).project(camera));
+    const ends = [seen.map(p => p.x), seen.map(p => p.y)].map(v => [Math.min(...v), Math.max(...v)] as const);
+    for (const [low, high] of ends) expect(low).toBeCloseTo(-high, 1);
+    expect(Math.max(...ends.map(([, high]) => high))).toBeCloseTo(1, 2);
+  });
+
+  it('is nothing of nothing', () => expect(fitView([], above, 0.5, 0.5)).toBeNull());
 });
