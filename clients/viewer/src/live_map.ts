@@ -28,8 +28,13 @@ export class LiveMap {
     return newest;
   }
 
-  hello(hello: Hello): void {
+  /** Returns whether another map has begun: a new one may be empty, and bring no delta for a long time. */
+  hello(hello: Hello): boolean {
     this.frame = hello.frame;
+    if (hello.epoch === this.live.epoch) return false;
+    const isFirst = this.live.epoch === 0;
+    this.live = { epoch: hello.epoch, revision: 0, planes: new Map() };
+    return !isFirst;
   }
 
   /** Returns whether another map has begun. @throws GapError */

@@ -59,7 +59,7 @@ export class Viewer {
   }
 
   hello(hello: Hello): void {
-    this.map.hello(hello);
+    if (this.map.hello(hello)) this.beginAnew();
     fetchPath().then(
       poses => this.scene.showPath(poses),
       () => {}, // the stream tells that the daemon is gone
@@ -68,8 +68,7 @@ export class Viewer {
   }
 
   delta(delta: Delta): void {
-    const isNewMap = this.map.apply(delta);
-    if (isNewMap) this.cells.clear();
+    if (this.map.apply(delta)) this.beginAnew();
     if (this.store.current.paused) {
       this.showPaused();
       return;
@@ -203,7 +202,7 @@ export class Viewer {
     const { measuring, paused } = this.store.current;
     const behind = this.map.behind;
     let text = '';
-    if (paused) text = behind > 0 ? `Paused, ${behind} revisions behind` : 'Paused';
+    if (paused) text = behind > 0 ? `Paused, ${behind} ${behind === 1 ? 'revision' : 'revisions'} behind` : 'Paused';
     else if (measuring && !this.selection.second) {
       text = this.selection.selected ? 'Choose the second plane' : 'Choose the first plane';
     } else if (this.map.shown.planes.size === 0) text = 'No planes yet';
@@ -211,6 +210,13 @@ export class Viewer {
     const hint = byId('hint');
     hint.hidden = text === '';
     setText(hint, text);
+  }
+
+  private beginAnew(): void {
+    this.cells.clear();
+    this.scene.showScan(null);
+    if (this.store.current.paused) this.showPaused();
+    else this.refresh('planes', 'cells', 'selection');
   }
 
   private showPaused(): void {
@@ -235,7 +241,7 @@ export class Viewer {
   }
 
   private async loadCells(): Promise<void> {
-    if (!this.cells.apply(await fetchCells(this.cells.revision))) this.cellPoller.want();
+    if (!this.cells.apply(await fetchCells(this.cells.epoch, this.cells.revision))) this.cellPoller.want();
     if (!this.store.current.paused) this.refresh('cells', 'selection');
   }
 }

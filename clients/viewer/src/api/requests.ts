@@ -12,9 +12,9 @@ async function ask(path: string): Promise<Response> {
   return response;
 }
 
-/** Blocks that changed after the revision; all for 0. */
-export async function fetchCells(since: number): Promise<CellsUpdate> {
-  const response = await ask(since > 0 ? `cells?since=${since}` : 'cells');
+/** Blocks that changed after the revision of the epoch; all for revision 0. */
+export async function fetchCells(epoch: number, since: number): Promise<CellsUpdate> {
+  const response = await ask(since > 0 ? `cells?since=${since}&epoch=${epoch}` : 'cells');
   return decodeCells(await response.arrayBuffer());
 }
 

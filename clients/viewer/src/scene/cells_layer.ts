@@ -12,7 +12,7 @@ export class CellsLayer {
     new BufferGeometry(),
     new PointsMaterial({ vertexColors: true, size: CELL_SIZE_M, sizeAttenuation: true }),
   );
-  private count = 0;
+  count = 0;
 
   constructor() {
     this.object.frustumCulled = false;

@@ -115,6 +115,14 @@ export class MapScene {
     this.update(this.shown, 'planes', 'cells', 'selection');
   }
 
+  get drawnCells(): number {
+    return this.cells.count;
+  }
+
+  get drawnCones(): number {
+    return this.cones.object.count;
+  }
+
   showPose(pose: Pose): void {
     if (this.robot.showPose(pose) && this.settings.layers.robot) this.viewport.invalidate();
   }

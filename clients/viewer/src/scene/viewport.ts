@@ -87,6 +87,17 @@ export class Viewport {
     return this.kind;
   }
 
+  /** Whether the last frame showed all there is. */
+  get isComplete(): boolean {
+    return this.drawn === FULL || this.drawn === SMOOTH;
+  }
+
+  /** Waits for what was drawn, which else goes on behind: for measurements. */
+  finishDrawing(): void {
+    const context = this.renderer.getContext();
+    context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
   set background(colour: Rgb) {
     const [r, g, b] = colour;
     this.renderer.setClearColor((r << 16) | (g << 8) | b);

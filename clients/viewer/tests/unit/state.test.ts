@@ -50,6 +50,15 @@ describe('LiveMap', () => {
     expect([map.shown.planes.size, map.behind]).toEqual([0, 0]);
   });
 
+  it('is empty when the daemon greets with another map, and as it was with the same', () => {
+    const map = new LiveMap();
+    const hello = { epoch: 1, revision: 5, frame: 'world', version: '1' };
+    expect(map.hello(hello)).toBe(false);
+    map.apply(delta({ full: true, revision: 5, planes: [plane()] }));
+    expect([map.hello(hello), map.shown.planes.size]).toEqual([false, 1]);
+    expect([map.hello({ ...hello, epoch: 2 }), map.shown.planes.size]).toEqual([true, 0]);
+  });
+
   it('knows when another map has begun', () => {
     const map = new LiveMap();
     expect(map.apply(delta({ full: true }))).toBe(false);
