@@ -64,6 +64,7 @@ readonly BUILD_PACKAGES=(
   zlib1g-dev
 )
 readonly TEST_PACKAGES=(
+  chromium            # shows the viewer's page
   clang               # the fuzz targets
   clang-format
   clang-tidy
@@ -143,7 +144,7 @@ install_packages() {
 }
 
 main() {
-  local list_only=0 packages=() missing
+  local list_only=0 needs_npm=0 packages=() missing
   local groups=()
   for argument in "$@"; do
     case $argument in
@@ -157,11 +158,13 @@ main() {
   for group in "${groups[@]}"; do
     case $group in
       run) packages+=("${RUN_PACKAGES[@]}") ;;
-      build) packages+=("${BUILD_PACKAGES[@]}") ;;
+      build) packages+=("${BUILD_PACKAGES[@]}"); needs_npm=1 ;;
       test) packages+=("${TEST_PACKAGES[@]}") ;;
-      all) packages+=("${RUN_PACKAGES[@]}" "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}") ;;
+      all) packages+=("${RUN_PACKAGES[@]}" "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"); needs_npm=1 ;;
     esac
   done
+  # npm builds the viewer's page. Debian's package conflicts where node and npm come from elsewhere, so only where there is none.
+  if ((needs_npm)) && ! command -v npm >/dev/null; then packages+=(nodejs npm); fi
   mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)
   if ((list_only)); then
     printf '%s\n' "${packages[@]}"

@@ -35,6 +35,7 @@ function start(): void {
     toggleTheme: () => store.set({ theme: viewer.isDark ? 'light' : 'dark' }),
     togglePanel: panel => panels.toggle(panel),
     fit: () => viewer.fit(),
+    fitSelected: () => viewer.fitSelected(),
     next: step => viewer.next(step),
     clear: () => viewer.clear(),
     help: showHelp,

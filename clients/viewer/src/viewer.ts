@@ -113,6 +113,13 @@ export class Viewer {
     this.scene.fit();
   }
 
+  fitSelected(): void {
+    const { selected } = this.selection;
+    if (!selected) return;
+    this.follows = false;
+    this.scene.fit([selected]);
+  }
+
   panelChanged(open: PanelName | null): void {
     if (open === 'planes') this.list.show(this.visible, this.selection.selectedId);
     this.coverByPanels();

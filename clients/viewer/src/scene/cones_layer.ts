@@ -5,10 +5,10 @@ import { CELL_SCALE_DEG } from './cells_layer';
 import { setColour } from './colours';
 
 const MOST_CONES = 1500;
-const HEIGHT_M = 0.18;
+const SIDE_M = 0.14; // from the apex to the rim
 /** Cones open by so many times the standard deviation: a degree could not be seen. The page says so. */
 export const CONE_FACTOR = 5;
-const WIDEST_RAD = (60 * Math.PI) / 180;
+const WIDEST_RAD = (85 * Math.PI) / 180;
 
 /** Open cone of height 1 and radius 1, its apex at the origin, opening along +z. */
 function unitCone(): ConeGeometry {
@@ -51,8 +51,9 @@ export class ConesLayer {
 
   private place(i: number, [x, y, z, nx, ny, nz, deviation]: Float32Array): void {
     const rotation = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(nx, ny, nz));
-    const radius = HEIGHT_M * Math.tan(Math.min(CONE_FACTOR * deviation!, WIDEST_RAD));
-    const size = new Vector3(radius, radius, HEIGHT_M);
+    const half = Math.min(CONE_FACTOR * deviation!, WIDEST_RAD);
+    const radius = SIDE_M * Math.sin(half);
+    const size = new Vector3(radius, radius, SIDE_M * Math.cos(half));
     const colour = new Color();
     setColour(colour, sequential(deviation! / ((CELL_SCALE_DEG * Math.PI) / 180)));
     this.object.setMatrixAt(i, new Matrix4().compose(new Vector3(x, y, z), rotation, size));

@@ -137,9 +137,9 @@ export class MapScene {
     if (this.settings.layers.scan) this.viewport.invalidate();
   }
 
-  /** Everything into view. */
-  fit(): void {
-    this.viewport.fit(this.shown.planes.map(plane => tessellate(plane).positions));
+  /** Brings these planes into view; else all. */
+  fit(planes: readonly PlaneRecord[] = this.shown.planes): void {
+    this.viewport.fit(planes.map(plane => tessellate(plane).positions));
   }
 
   /** The plane at a point of the page. */

@@ -12,6 +12,7 @@ export interface Actions {
   toggleTheme(): void;
   togglePanel(panel: 'controls' | 'planes'): void;
   fit(): void;
+  fitSelected(): void;
   next(step: 1 | -1): void;
   clear(): void;
   help(): void;
@@ -48,6 +49,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { keys: ['+', '='], label: 'nearer', shown: '+', run: actions => actions.move({ nearer: 1.2 }) },
   { keys: ['-'], label: 'farther', shown: '\u2212', run: actions => actions.move({ nearer: 1 / 1.2 }) },
   { keys: ['f'], label: 'everything into view', shown: 'F', run: actions => actions.fit() },
+  { keys: ['z'], label: 'selected plane into view', shown: 'Z', run: actions => actions.fitSelected() },
   { keys: ['v'], label: 'floor plan, and back', shown: 'V', run: actions => actions.togglePlan() },
   { keys: ['n'], label: 'next plane, by size', shown: 'N', run: actions => actions.next(1) },
   { keys: ['b'], label: 'plane before', shown: 'B', run: actions => actions.next(-1) },

@@ -38,7 +38,7 @@ export class StatusBar {
       setText(byId('connection-text'), `Gone since ${clock(state.since_ms)}`);
       setText(
         byId('banner-text'),
-        `planemapd does not answer since ${clock(state.since_ms)} (${silent}): ${state.reason}. ` +
+        `planemapd has not answered since ${clock(state.since_ms)} (${silent}): ${state.reason}. ` +
           `The map is shown as it was then. ${next}`,
       );
     } else if (state.kind === 'live') {

@@ -135,13 +135,18 @@ describe('the page with an apartment', () => {
   it('shows cells by the deviation of their normals, the scan and the cones of a plane', async () => {
     await page.click('[data-layer="cells"]');
     await until(page, () => window.planemapViewer.scene.drawnCells > 10_000, null);
-    await picture(page, 'cells');
     await page.click('[data-layer="scan"]');
+    await picture(page, 'cells');
     await page.keyboard.press('n');
     await until(page, () => window.planemapViewer.scene.drawnCones > 100, null);
-    await picture(page, 'cones');
     await page.click('[data-layer="cells"]');
     await page.click('[data-layer="scan"]');
+    const table = planes.filter(plane => plane.class === 'table').sort((a, b) => b.area - a.area)[0]!;
+    await page.evaluate(id => window.planemapViewer.choose(id), table.id);
+    await page.keyboard.press('z');
+    await until(page, () => window.planemapViewer.scene.drawnCones > 10, null);
+    await picture(page, 'cones');
+    await page.keyboard.press('f');
     await page.keyboard.press('Escape');
   });
 
@@ -240,7 +245,7 @@ describe('the page with an apartment', () => {
   it('says when the daemon is gone and since when, and goes on when it is back', async () => {
     await daemon.stop('SIGKILL');
     await expect.poll(() => page.locator('#banner').isVisible()).toBe(true);
-    expect(await page.locator('#banner-text').innerText()).toMatch(/does not answer since \d\d:\d\d:\d\d/);
+    expect(await page.locator('#banner-text').innerText()).toMatch(/has not answered since \d\d:\d\d:\d\d/);
     expect(await page.locator('#connection').innerText()).toMatch(/Gone since \d\d:\d\d:\d\d/);
     await picture(page, 'gone');
     daemon = await Daemon.start();
