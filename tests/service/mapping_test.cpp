@@ -346,6 +346,27 @@ TEST(MappingService, StopCountsWhatWasStillWaiting) {
   EXPECT_EQ(counters.value("scans.mapped") + counters.value("scans.dropped.shutdown"), 50);
 }
 
+TEST(MappingService, TellsOfEachMappedScanOnceItsSnapshotIsThere) {
+  Counters counters;
+  MappingService mapping(ServiceConfig{}, 7, counters, {});
+  std::promise<void> told;
+  mapping.set_scan_listener([&](const MappedScan& mapped) {
+    EXPECT_EQ(utime_of(mapped.scan.scan), kSecond);
+    EXPECT_EQ(mapped.epoch, 7u);
+    EXPECT_EQ(mapping.snapshot()->utime(), kSecond);
+    EXPECT_GT(mapped.stage_ms[0], 0.0);
+    EXPECT_GE(mapped.scan_ms, mapped.stage_ms[0]);
+    told.set_value();
+  });
+  counters.scan_received();
+  mapping.push(wall_scan(kSecond));
+  told.get_future().wait();
+  mapping.set_scan_listener({});  // once it has returned, nobody is told any more
+  counters.scan_received();
+  mapping.push(wall_scan(kSecond + 1));
+  mapping.stop();
+}
+
 TEST(MappingService, DropsScansWhilePausedAndMapsThemAgain) {
   Counters counters;
   std::promise<void> mapped;

@@ -134,8 +134,8 @@ void MappingService::run(const std::stop_token& stop) {
       counters_.scan_dropped("mapper_error");
       note_error(fmt::format("the scan at utime {} could not be mapped: {}", utime_of(scan->scan), e.what()));
     }
-    if (is_mapped && on_snapshot_) on_snapshot_();
     note_busy(std::nullopt);
+    if (is_mapped && on_snapshot_) on_snapshot_();
   }
 }
 

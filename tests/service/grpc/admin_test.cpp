@@ -153,6 +153,21 @@ TEST(HealthOfTheServer, IsServingUntilItStops) {
   EXPECT_EQ(response.status(), HealthCheckResponse::NOT_SERVING);
 }
 
+TEST(HealthOfTheServer, IsWhatTheServiceSaysOfItself) {
+  TestDaemon daemon;
+  const auto health = Health::NewStub(daemon.channel());
+  for (const bool is_serving : {false, true}) {
+    daemon.server().set_serving(is_serving);
+    for (const char* name : {"", "planemap.v1.PlaneMap", "planemap.v1.Admin"}) {
+      HealthCheckRequest request;
+      request.set_service(name);
+      HealthCheckResponse response;
+      ASSERT_TRUE(health->Check(new_context().get(), request, &response).ok()) << name;
+      EXPECT_EQ(response.status() == HealthCheckResponse::SERVING, is_serving) << name;
+    }
+  }
+}
+
 TEST(Reflection, TellsServicesAndFiles) {
   using test::ReflectionRequest;
   using test::ReflectionResponse;

@@ -164,8 +164,8 @@ TEST(Health, TellsAMapperThatHangs) {
   const Health health(room.service().mapping(), 2.0);
   std::promise<void> release;
   const auto released = release.get_future().share();
-  room.service().set_snapshot_listener([released] { released.wait(); });
-  room.look_at_floor();  // the mapper hangs behind it
+  room.service().mapping().set_scan_listener([released](const MappedScan&) { released.wait(); });
+  room.look_at_floor();  // it is mapped, and the mapper hangs before it is done with it
   const double now_s = steady_now_s();
   EXPECT_TRUE(health.liveness(now_s).is_good);
   const HealthReport report = health.liveness(now_s + 100.0);

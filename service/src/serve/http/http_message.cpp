@@ -121,8 +121,8 @@ std::string head_of(const HttpAnswer& answer, bool keeps_alive) {
                                  common_headers(), keeps_alive ? "keep-alive" : "close");
   head += answer.may_be_kept ? "Cache-Control: public, max-age=31536000, immutable\r\n" : "Cache-Control: no-cache\r\n";
   head += "Vary: Accept-Encoding\r\n";
-  if (!answer.etag.empty()) head += "ETag: " + answer.etag + "\r\n";
-  for (const auto& [name, value] : answer.more_headers) head += name + ": " + value + "\r\n";
+  if (!answer.etag.empty()) head += fmt::format("ETag: {}\r\n", answer.etag);
+  for (const auto& [name, value] : answer.more_headers) head += fmt::format("{}: {}\r\n", name, value);
   const bool has_no_body_ever = answer.status == 204 || answer.status == 304;
   if (!has_no_body_ever) {
     head += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n", answer.content_type,
