@@ -27,6 +27,8 @@
 #include "serve/http/http_server.hpp"
 #include "service.hpp"
 #include "service_manager.hpp"
+#include "store/map_saver.hpp"
+#include "store/map_store.hpp"
 
 namespace planemap::service {
 namespace {
@@ -38,6 +40,7 @@ constexpr int kWrongUse = 2;
 struct Arguments {
   ConfigSources sources;
   std::string lcm_url;
+  std::string map;
   bool print_config = false;
 };
 
@@ -54,6 +57,8 @@ void define_options(CLI::App& app, Arguments& arguments) {
       ->allow_extra_args(false);
   app.add_option("-l,--lcm-url", arguments.lcm_url, "bus; else lcm.url, else LCM_DEFAULT_URL of the environment")
       ->type_name("URL");
+  app.add_option("--map", arguments.map, "map file to go on with, made where there is none; wins over store.path")
+      ->type_name("FILE");
   app.add_flag("--print-config", arguments.print_config, "print the settings that would be used, and end");
   app.footer(
       "Exit codes: 0 ended by SIGTERM or SIGINT, 1 failed, 2 wrong use or configuration.\n"
@@ -73,8 +78,8 @@ std::string text_of(const char* path) {
   return text.str();
 }
 
-void log_start(const ServiceConfig& config, const std::string& url, std::uint64_t epoch) {
-  spdlog::info("planemapd {}, epoch {}, bus {}", version(), epoch, url);
+void log_start(const ServiceConfig& config, const std::string& url) {
+  spdlog::info("planemapd {}, bus {}", version(), url);
   for (const auto& input : config.inputs) {
     spdlog::info("input {}: scans on {}, poses on {}", input.name, input.channel, input.pose_channel);
   }
@@ -143,13 +148,29 @@ int serve(const ServiceConfig& config) {
 
   const std::string url = effective_lcm_url(config.lcm);
   const std::uint64_t epoch = new_epoch();
-  log_start(config, url, epoch);
+  log_start(config, url);
   const auto bus = open_bus(url);
   if (!bus) {
     spdlog::error("{}", bus.error().message);
     return kFailed;
   }
-  Service service(config, **bus, epoch);
+  std::unique_ptr<MapStore> store;
+  if (!config.store.path.empty()) {
+    auto opened = open_store(config, epoch);
+    if (!opened) {
+      spdlog::error("{}", opened.error().message);
+      return kFailed;
+    }
+    store = std::make_unique<MapStore>(std::move(*opened));
+  }
+  Service service(config, **bus, epoch, store ? store->initial.get() : nullptr);
+  spdlog::info("the map is of epoch {}", service.snapshot()->epoch());
+  std::unique_ptr<MapSaver> saver;
+  if (store) {
+    store->initial.reset();
+    saver = std::make_unique<MapSaver>(config.store, std::move(*store), service.mapping(), service.counter_board());
+    service.mapping().set_keeper(saver.get());
+  }
   std::unique_ptr<GrpcServer> grpc;
   if (!config.grpc.listen.empty()) {
     auto started = GrpcServer::start(config, service.mapping(), service.status_board(), service.counter_board());
@@ -185,6 +206,8 @@ int serve(const ServiceConfig& config) {
   bus_thread.request_stop();
   bus_thread.join();
   service.stop();
+  service.mapping().set_keeper(nullptr);
+  if (saver) saver->stop();
   const auto snapshot = service.snapshot();
   spdlog::info("ended with {} planes, {} cells, revision {}", snapshot->planes().size(), snapshot->cell_count(),
                snapshot->revision());
@@ -206,6 +229,7 @@ int run(int argc, char** argv) {
     return kWrongUse;
   }
   if (!arguments.lcm_url.empty()) config->lcm.url = arguments.lcm_url;
+  if (!arguments.map.empty()) config->store.path = arguments.map;
   if (arguments.print_config) {
     std::fputs(to_yaml(*config).c_str(), stdout);
     return kDone;

@@ -27,11 +27,12 @@ std::string escaped(const std::string& channel) {
 
 }  // namespace
 
-Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch)
+Service::Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch, const MapSnapshot* initial)
     : request_channel_(config.publish.request_channel),
       bus_(bus),
       // The mapper may have a snapshot before the server is made; it is not handed a scan before, though.
-      mapping_(config, epoch, counters_, [this] { on_snapshot(); }),
+      mapping_(
+          config, epoch, counters_, [this] { on_snapshot(); }, initial),
       health_(mapping_),
       intake_(
           config, counters_, [this](RegisteredScan&& scan) { mapping_.push(std::move(scan)); },

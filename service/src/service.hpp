@@ -27,9 +27,10 @@ class Service {
  public:
   /// Subscribes and starts. The bus is handed in, so tests pass "memq://"; it must outlive the service, and nobody may
   /// handle it any more once the service is gone: its subscriptions stay, as LCM cannot end them safely.
-  /// @param epoch  names this life of the map, below 2^53
-  /// @throws std::runtime_error if the bus lets it subscribe to nothing
-  Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch);
+  /// @param epoch  names the life of a map that begins, below 2^53
+  /// @param initial  map to go on with, in its own epoch; nullptr: an empty one
+  /// @throws std::runtime_error if the bus lets it subscribe to nothing, or the initial map cannot be gone on with
+  Service(const ServiceConfig& config, lcm::LCM& bus, std::uint64_t epoch, const MapSnapshot* initial = nullptr);
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;

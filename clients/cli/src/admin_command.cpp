@@ -18,6 +18,8 @@ using client::GrpcMapAdmin;
 struct AdminOptions {
   ServerOptions server;
   bool json = false;
+  std::string map;   ///< of save: file to copy; empty: the daemon is asked
+  std::string copy;  ///< of save
 };
 
 /// What was done, for people and for programs.
@@ -49,6 +51,7 @@ client::Expected<Done> save(GrpcMapAdmin& admin, GrpcMapAdmin::Timeout timeout) 
 }
 
 ExitCode run(const AdminOptions& options, const Do& action) {
+  if (!options.map.empty()) return copy_map_file(options.map, options.copy);
   const auto connection = connect_to_server(options.server);
   if (!connection) return connection.error();
   GrpcMapAdmin admin(*connection);
@@ -58,14 +61,15 @@ ExitCode run(const AdminOptions& options, const Do& action) {
   return ExitCode::kDone;
 }
 
-void add(CLI::App& app, Action& action, const char* name, const char* help, Do command_action) {
+CLI::App* add(CLI::App& app, Action& action, const char* name, const char* help, Do command_action,
+              const std::shared_ptr<AdminOptions>& options = std::make_shared<AdminOptions>()) {
   CLI::App* command = app.add_subcommand(name, help);
-  const auto options = std::make_shared<AdminOptions>();
   command->add_flag("--json", options->json, "Print one JSON object");
   add_server_options(*command, options->server);
   command->callback([options, &action, does = std::move(command_action)] {
     action = [options, does] { return run(*options, does); };
   });
+  return command;
 }
 
 }  // namespace
@@ -74,7 +78,14 @@ void add_admin_commands(CLI::App& app, Action& action) {
   add(app, action, "pause", "Let the daemon drop scans until 'resume'; the map stays and can be asked", pause);
   add(app, action, "resume", "Let the daemon map scans again", resume);
   add(app, action, "reset", "Let the daemon forget its map and begin a new one", reset);
-  add(app, action, "save", "Let the daemon write its map to its store", save);
+  const auto options = std::make_shared<AdminOptions>();
+  CLI::App* command =
+      add(app, action, "save", "Let the daemon commit its map to its file, or copy a map file", save, options);
+  CLI::Option* map = command->add_option(
+      "MAP", options->map, "Copy this file consistently, also while planemapd writes it; none: ask the daemon");
+  CLI::Option* copy = command->add_option("OUT", options->copy, "The copy; written over");
+  map->needs(copy);
+  copy->needs(map);
 }
 
 }  // namespace planemap::cli

@@ -12,6 +12,7 @@
 #include "config/service_config.hpp"
 #include "export/export_map.hpp"
 #include "export/exporter.hpp"
+#include "store/map_store.hpp"
 
 namespace planemap::cli {
 namespace {
@@ -20,6 +21,7 @@ struct BuildOptions {
   std::string path;
   service::ConfigSources config;
   std::vector<std::string> outputs;
+  std::string map;
   std::string intrinsics;
   double depth_scale_m = 0.0;
   std::size_t frames = 0;
@@ -86,6 +88,12 @@ ExitCode run(const BuildOptions& options) {
     if (auto written = export_to(map, output); !written) return complain(ExitCode::kFailed, written.error().message);
     exported.push_back(output);
   }
+  if (anything && !options.map.empty()) {
+    auto file = service::MapFile::create(options.map, service::facts_of(result->config));
+    const auto written = file ? file->close(result->snapshot) : tl::make_unexpected(file.error());
+    if (!written) return complain(ExitCode::kFailed, written.error().message);
+    exported.push_back(options.map);
+  }
   if (options.json) {
     std::fputs(summary_json(*result, map, exported).c_str(), stdout);
   } else if (!options.quiet) {
@@ -114,6 +122,8 @@ void add_build_command(CLI::App& app, Action& action) {
   command->add_option("--export", options->outputs, "Write the map, format by extension: " + known_formats())
       ->type_name("OUT")
       ->allow_extra_args(false);
+  command->add_option("--output", options->map, "Write a map file (NAME.planemap), with which planemapd can go on")
+      ->type_name("MAP");
   command->add_option("--intrinsics", options->intrinsics, "Camera of a folder's images, pixels")
       ->type_name("FX,FY,CX,CY");
   command->add_option("--depth-scale", options->depth_scale_m, "Metres per unit of a folder's depth images")

@@ -27,6 +27,11 @@ void add_floorplan_command(CLI::App& app, Action& action);
 void add_watch_command(CLI::App& app, Action& action);
 /// pause, resume, reset and save.
 void add_admin_commands(CLI::App& app, Action& action);
+/// info and recover.
+void add_map_commands(CLI::App& app, Action& action);
+
+/// Copies a map file consistently, also one that planemapd is writing.
+ExitCode copy_map_file(const std::string& map, const std::string& copy);
 
 /// Says on stderr what went wrong: "planemap: ...".
 ExitCode complain(ExitCode code, const std::string& message);

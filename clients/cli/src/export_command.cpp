@@ -7,6 +7,7 @@
 #include "daemon_options.hpp"
 #include "export/export_map_of_wire.hpp"
 #include "export/exporter.hpp"
+#include "store/map_file.hpp"
 
 namespace planemap::cli {
 namespace {
@@ -18,12 +19,22 @@ struct ExportOptions {
   bool quiet = false;
 };
 
-ExitCode run(const ExportOptions& options) {
-  if (options.from != "-") {
-    return complain(ExitCode::kWrongUse, options.from + ": only '-', the running daemon, can be exported");
+ExitCode write(const ExportMap& map, const ExportOptions& options) {
+  for (const std::string& output : options.outputs) {
+    if (auto written = export_to(map, output); !written) return complain(ExitCode::kFailed, written.error().message);
+    if (!options.quiet) std::printf("%s\n", output.c_str());
   }
+  return ExitCode::kDone;
+}
+
+ExitCode run(const ExportOptions& options) {
   for (const std::string& output : options.outputs) {
     if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
+  }
+  if (options.from != "-") {
+    const auto stored = service::MapFile::read(options.from);
+    if (!stored) return complain(ExitCode::kFailed, stored.error().message);
+    return write(export_map_of(*stored->snapshot, stored->facts.frame, stored->facts.gravity_direction()), options);
   }
   const auto client = connect(options.daemon);
   if (!client) return client.error();
@@ -31,19 +42,15 @@ ExitCode run(const ExportOptions& options) {
   if (!answer) return complain(answer.error(), options.daemon);
   const auto map = export_map_of(*answer);
   if (!map) return complain(ExitCode::kFailed, map.error().message);
-  for (const std::string& output : options.outputs) {
-    if (auto written = export_to(*map, output); !written) return complain(ExitCode::kFailed, written.error().message);
-    if (!options.quiet) std::printf("%s\n", output.c_str());
-  }
-  return ExitCode::kDone;
+  return write(*map, options);
 }
 
 }  // namespace
 
 void add_export_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("export", "Write the daemon's map to files");
+  CLI::App* command = app.add_subcommand("export", "Write the map of a file, or of the daemon, to files");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("MAP", options->from, "Whose map: - asks the running daemon")->required();
+  command->add_option("MAP", options->from, "Map file; - asks the running daemon")->required();
   command->add_option("OUT", options->outputs, "Files to write, format by extension: " + known_formats())->required();
   add_daemon_options(*command, options->daemon);
   command->add_flag("--quiet", options->quiet, "Don't print the names of the files");

@@ -29,6 +29,7 @@ std::string json_text(const client::Status& status) {
                                        {"scanMs", {{"p50", status.scan_ms_p50}, {"max", status.scan_ms_max}}},
                                        {"lastScanUtime", status.last_scan_utime},
                                        {"idleReason", status.idle_reason},
+                                       {"degraded", status.degraded},
                                        {"counters", status.counters}};
   return json.dump() + '\n';
 }
@@ -49,6 +50,7 @@ std::string plain_text(const client::Status& status) {
   line("mapping", fmt::format("{:.1f} scans/s, {:.1f} ms a scan (median), {:.1f} ms at most", status.scan_rate_hz,
                               status.scan_ms_p50, status.scan_ms_max));
   if (!status.idle_reason.empty()) line("idle", status.idle_reason);
+  if (!status.degraded.empty()) line("degraded", status.degraded);
   line("scans",
        fmt::format("{} received = {} mapped + {} dropped + {} rejected + {} waiting", sum_of(status, "scans.received"),
                    sum_of(status, "scans.mapped"), sum_of(status, "scans.dropped."), sum_of(status, "scans.rejected."),

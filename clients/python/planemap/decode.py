@@ -122,6 +122,7 @@ def status_of(message: planemap_service_pb2.GetStatusResponse) -> Status:
         scan_ms_p50=message.scan_ms_p50,
         scan_ms_max=message.scan_ms_max,
         idle_reason=message.idle_reason,
+        degraded=message.degraded,
         paused=message.paused,
         counters=dict(message.counters),
     )

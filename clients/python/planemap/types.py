@@ -127,6 +127,8 @@ class Status:
     scan_ms_max: float
     idle_reason: str
     """Why nothing is being mapped; empty while scans are mapped."""
+    degraded: str
+    """What the service cannot do at present, while it maps on; empty: nothing."""
     paused: bool
     counters: dict[str, int]
 

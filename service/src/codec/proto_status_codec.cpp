@@ -16,6 +16,7 @@ v1::GetStatusResponse to_proto(const planemap_lcm::status_t& status, std::int64_
   message.set_scan_ms_p50(status.scan_ms_p50);
   message.set_scan_ms_max(status.scan_ms_max);
   message.set_idle_reason(status.idle_reason);
+  message.set_degraded(status.degraded);
   message.set_paused(is_paused);
   for (const auto& counter : status.counters) (*message.mutable_counters())[counter.name] = counter.value;
   return message;

@@ -238,6 +238,21 @@ void visit_fields(Config& c, Visit&& visit) {
         c.waiting_bytes);
 }
 
+struct StoreConfig {
+  std::string path;         ///< of the map file; empty: the map ends with the process
+  double interval_s = 1.0;  ///< between two commits: what a crash can lose
+  double backup_s = 600.0;  ///< between two backups
+};
+
+template <MaybeConst<StoreConfig> Config, class Visit>
+void visit_fields(Config& c, Visit&& visit) {
+  visit(FieldInfo{"path", "map file, made where there is none; empty: the map ends with the process", 0, 4096}, c.path);
+  visit(FieldInfo{"interval_s", "what changed is written so often: what a crash can lose", 0.05, 60.0}, c.interval_s);
+  visit(
+      FieldInfo{"backup_s", "a copy is written beside the file (.backup) at the start and so often; 0: none", 0.0, 1e6},
+      c.backup_s);
+}
+
 struct ServiceConfig {
   MapperConfig mapper;  ///< sections core, sensor, grid, normals, planes and wear
   MapConfig map;
@@ -249,6 +264,7 @@ struct ServiceConfig {
   PublishConfig publish;
   GrpcConfig grpc;
   HttpConfig http;
+  StoreConfig store;
   LogConfig log;
   LimitsConfig limits;
 };
@@ -277,6 +293,7 @@ void visit_sections(Config& c, Visit&& visit) {
   visit(SectionInfo{"publish", "What goes out over LCM."}, c.publish);
   visit(SectionInfo{"grpc", "What remote clients may ask over gRPC (planemap.v1)."}, c.grpc);
   visit(SectionInfo{"http", "The viewer's page and what it asks, metrics and health, over HTTP."}, c.http);
+  visit(SectionInfo{"store", "The map file: what outlives the process."}, c.store);
   visit(SectionInfo{"log", "The log, on standard error."}, c.log);
   visit(SectionInfo{"limits", "What is taken from the outside at most."}, c.limits);
 }

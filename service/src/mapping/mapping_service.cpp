@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,13 @@ constexpr std::size_t kTimedScans = 100;
 constexpr double kRateWindowS = 1.0;
 constexpr double kWarnPeriodS = 5.0;
 
+Mapper first_mapper(const MapperConfig& config, std::uint64_t epoch, const MapSnapshot* initial, SecondThread* second) {
+  if (initial == nullptr) return {config, epoch, second};
+  auto mapper = Mapper::restore(config, *initial, second);
+  if (!mapper) throw std::runtime_error("the map cannot be gone on with: " + mapper.error().message);
+  return std::move(*mapper);
+}
+
 }  // namespace
 
 double steady_now_s() {
@@ -25,14 +33,14 @@ double steady_now_s() {
 }
 
 MappingService::MappingService(const ServiceConfig& config, std::uint64_t epoch, Counters& counters,
-                               std::function<void()> on_snapshot)
+                               std::function<void()> on_snapshot, const MapSnapshot* initial)
     : config_(config.mapper),
-      first_epoch_(epoch),
+      first_epoch_(initial == nullptr ? epoch : std::max(epoch, initial->epoch())),
       counters_(counters),
       on_snapshot_(std::move(on_snapshot)),
       queue_(static_cast<std::size_t>(config.queue.scans)),
       helper_(helper_thread_for(config.mapping.threads)),
-      mapper_(config_, epoch, helper_.get()),
+      mapper_(first_mapper(config_, epoch, initial, helper_.get())),
       repeats_(kWarnPeriodS),
       snapshot_(mapper_.snapshot()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -85,6 +93,27 @@ std::optional<std::uint64_t> MappingService::reset(std::chrono::steady_clock::du
   queue_.interrupt();
   if (!reset_done_.wait_for(lock, timeout, [&] { return done_resets_ >= number; })) return std::nullopt;
   return snapshot_->epoch();
+}
+
+void MappingService::set_keeper(MapKeeper* keeper) {
+  const std::unique_lock lock(keeper_mutex_);
+  keeper_ = keeper;
+}
+
+bool MappingService::has_keeper() const {
+  const std::shared_lock lock(keeper_mutex_);
+  return keeper_ != nullptr;
+}
+
+Expected<void> MappingService::save(std::chrono::steady_clock::duration timeout) {
+  const std::shared_lock lock(keeper_mutex_);
+  if (keeper_ == nullptr) return fail("the map has no file: planemapd --map FILE, or store.path, gives it one");
+  return keeper_->save(timeout);
+}
+
+std::string MappingService::keeper_problem() const {
+  const std::shared_lock lock(keeper_mutex_);
+  return keeper_ == nullptr ? std::string() : keeper_->problem();
 }
 
 /// On the mapper's thread. Unlike after a jump of the pose, readers get the new map at once, though it is empty.

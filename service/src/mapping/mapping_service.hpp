@@ -8,8 +8,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <planemap/expected.hpp>
 #include <planemap/mapper.hpp>
 #include <planemap/snapshot.hpp>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "common/repeat_guard.hpp"
 #include "config/service_config.hpp"
 #include "mapping/helper_thread.hpp"
+#include "mapping/map_keeper.hpp"
 #include "mapping/scan_queue.hpp"
 
 namespace planemap::service {
@@ -51,12 +54,16 @@ struct MappedScan {
 /// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
 class MappingService {
  public:
-  /// @param epoch        names this life of the map, below 2^53; scans of map number n (RegisteredScan) go into the
-  ///                     map of epoch + n
+  /// @param epoch        names the life of a map that begins, below 2^53; scans of map number n (RegisteredScan) go
+  /// into
+  ///                     the map of epoch + n
   /// @param on_snapshot  called on the mapper's thread after each new snapshot; must return at once and throw nothing;
   ///                     may be empty
+  /// @param initial      map to go on with, in its own epoch; maps that begin after it are of greater epochs than
+  ///                     both, so that one that was lost before it was saved keeps its own. nullptr: an empty one
+  /// @throws std::runtime_error if the initial map cannot be gone on with
   MappingService(const ServiceConfig& config, std::uint64_t epoch, Counters& counters,
-                 std::function<void()> on_snapshot);
+                 std::function<void()> on_snapshot, const MapSnapshot* initial = nullptr);
   ~MappingService();
   MappingService(const MappingService&) = delete;
   MappingService& operator=(const MappingService&) = delete;
@@ -80,6 +87,14 @@ class MappingService {
   /// counted ("reset"). From any thread.
   /// @return epoch of the new map; empty: the mapper did not come to it in time (it will), or has ended
   std::optional<std::uint64_t> reset(std::chrono::steady_clock::duration timeout);
+  /// Who keeps the map; must outlive the service, or be taken away before with nullptr. From any thread.
+  void set_keeper(MapKeeper* keeper);
+  /// Commits the map to its file; fails where nobody keeps it, or that fails. From any thread.
+  Expected<void> save(std::chrono::steady_clock::duration timeout);
+  /// Whether there is a file that the map is kept in.
+  bool has_keeper() const;
+  /// Why the map is not being kept, in words; empty: it is, or is not meant to be.
+  std::string keeper_problem() const;
   /// Ends the thread after the scan at hand; scans that still wait are dropped and counted. Called by the destructor,
   /// too.
   void stop();
@@ -116,6 +131,8 @@ class MappingService {
 
   std::mutex listener_mutex_;
   std::function<void(const MappedScan&)> scan_listener_;
+  mutable std::shared_mutex keeper_mutex_;  ///< held while the keeper is asked
+  MapKeeper* keeper_ = nullptr;
 
   std::jthread thread_;  ///< last: ends before what it uses
 };

@@ -54,6 +54,7 @@ planemap_lcm::status_t StatusBoard::status(double now_host_s, std::int64_t utime
   status.scan_ms_max = stats.scan_ms_max;
   status.last_scan_utime = stats.last_scan_utime;
   status.idle_reason = idle_reason_at(now_host_s);
+  status.degraded = mapping_.keeper_problem();
   counters_.set("lcm.kernel_drops", kernel_drops_.count());
   for (const auto& [name, value] : counters_.values()) {
     planemap_lcm::counter_t counter{};

@@ -18,7 +18,7 @@ namespace planemap::service {
 namespace {
 
 /// How far ids and revisions are reserved ahead: what a mapper uses in a second, many times over.
-constexpr std::uint64_t kIdsAhead = 1024;
+constexpr std::uint64_t kIdsAhead = 4096;
 constexpr std::uint64_t kRevisionsAhead = 65536;
 
 constexpr const char* kSchema = R"(

@@ -48,6 +48,7 @@ struct StoredMap {
   std::shared_ptr<const MapSnapshot> snapshot;
   MapFacts facts;
   int format = kMapFileFormat;
+  std::uint64_t bytes = 0;               ///< of the file, with what waits beside it in the WAL
   PlaneId reserved_ids = 1;              ///< ids below this may be known to a reader
   std::uint64_t reserved_revisions = 0;  ///< and revisions below this
   bool closed = false;                   ///< it was closed in good order: nothing beyond what is in it was seen

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -100,6 +102,26 @@ std::string immutable_uri(const fs::path& path) {
   return "file:" + escaped + "?immutable=1";
 }
 
+/// Whether a file's first bytes are another format's, rather than those of a damaged database.
+bool is_something_else(const fs::path& path) {
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  std::array<char, 16> head{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  const auto size = static_cast<std::size_t>(file.gcount());
+  std::size_t alike = 0;
+  std::size_t zeros = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    alike += head.at(i) == kMagic[i] ? 1U : 0U;
+    zeros += head.at(i) == '\0' ? 1U : 0U;
+  }
+  return 2 * alike < size && zeros < size;
+}
+
+std::uint64_t whole_number(const std::string& digits) {
+  return std::strtoull(digits.c_str(), nullptr, 10);
+}
+
 }  // namespace
 
 StoreExpected<Database> open_database(const fs::path& path, Database::Access access) {
@@ -107,6 +129,7 @@ StoreExpected<Database> open_database(const fs::path& path, Database::Access acc
   if (!fs::exists(path, problem)) return error_of(Kind::kSystem, path, "there is no such file");
   if (fs::is_directory(path, problem)) return error_of(Kind::kOther, path, "is a folder");
   if (fs::file_size(path, problem) == 0 && !problem) return error_of(Kind::kDamaged, path, "the file is empty");
+  if (is_something_else(path)) return error_of(Kind::kOther, path, "is no map file: it is none of SQLite's databases");
   try {
     const bool alone = access == Database::Access::kRead && !fs::exists(path.string() + "-wal");
     Database database(alone ? fs::path(immutable_uri(path)) : path, access);
@@ -141,6 +164,8 @@ StoreExpected<ReadMap> read_map(Database& database, const fs::path& path) {
     database.execute("BEGIN");
     if (const std::string state = database.answer("PRAGMA quick_check(1)"); state != "ok") throw Damage(state);
     ReadMap read = read_whole(database);
+    read.map.bytes =
+        whole_number(database.answer("PRAGMA page_count")) * whole_number(database.answer("PRAGMA page_size"));
     database.execute("COMMIT");
     return read;
   } catch (const Damage& damage) {

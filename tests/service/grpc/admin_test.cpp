@@ -123,8 +123,8 @@ TEST(Admin, CallsBeyondThoseThatMayWaitAreRefused) {
 TEST(Admin, SaveSaysThatThereIsNoStore) {
   TestDaemon daemon;
   v1::SaveResponse response;
-  expect_error(daemon.admin()->Save(new_context().get(), {}, &response), StatusCode::UNIMPLEMENTED,
-               "this version of planemapd has no store: the map cannot be saved");
+  expect_error(daemon.admin()->Save(new_context().get(), {}, &response), StatusCode::FAILED_PRECONDITION,
+               "the map has no file: planemapd --map FILE, or store.path, gives it one");
 }
 
 TEST(HealthOfTheServer, IsServingUntilItStops) {

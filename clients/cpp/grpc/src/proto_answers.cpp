@@ -222,6 +222,7 @@ bool read(const v1::GetStatusResponse& message, Status& status) {
   status.scan_ms_max = message.scan_ms_max();
   status.last_scan_utime = message.map().utime();
   status.idle_reason = message.idle_reason();
+  status.degraded = message.degraded();
   status.counters.insert(message.counters().begin(), message.counters().end());
   MapVersion version;
   const bool sound = read(message.map(), version) && read_number(message.plane_count(), status.plane_count) &&

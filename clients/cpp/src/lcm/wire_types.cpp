@@ -99,6 +99,7 @@ Status status_of(const status_t& wire) {
   status.scan_ms_max = wire.scan_ms_max;
   status.last_scan_utime = wire.last_scan_utime;
   status.idle_reason = wire.idle_reason;
+  status.degraded = wire.degraded;
   for (const auto& counter : wire.counters) status.counters[counter.name] = counter.value;
   return status;
 }

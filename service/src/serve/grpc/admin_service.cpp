@@ -10,12 +10,20 @@ namespace {
 /// The scan at hand is mapped first.
 constexpr std::chrono::seconds kResetTimeout(5);
 
+/// A slow disk takes a whole map.
+constexpr std::chrono::seconds kSaveTimeout(20);
+
 }  // namespace
 
 grpc::ServerUnaryReactor* AdminService::Save(grpc::CallbackServerContext* context, const v1::SaveRequest*,
                                              v1::SaveResponse*) {
-  return answer(desk_, context, Scope::kAdmin, []() -> grpc::Status {
-    return {grpc::StatusCode::UNIMPLEMENTED, "this version of planemapd has no store: the map cannot be saved"};
+  return answer(desk_, context, Scope::kAdmin, [this, context]() -> grpc::Status {
+    spdlog::info("gRPC: {} asks for the map to be saved", context->peer());
+    const bool has_file = mapping_.has_keeper();
+    if (const auto saved = mapping_.save(kSaveTimeout); !saved) {
+      return {has_file ? grpc::StatusCode::UNAVAILABLE : grpc::StatusCode::FAILED_PRECONDITION, saved.error().message};
+    }
+    return grpc::Status::OK;
   });
 }
 
@@ -28,6 +36,11 @@ grpc::ServerUnaryReactor* AdminService::Reset(grpc::CallbackServerContext* conte
       return {grpc::StatusCode::UNAVAILABLE, "the mapper is busy with a scan; the new map begins once that is mapped"};
     }
     response->set_epoch(*epoch);
+    if (!mapping_.has_keeper()) return grpc::Status::OK;
+    if (const auto saved = mapping_.save(kSaveTimeout); !saved) {  // else a crash would bring the old map back
+      return {grpc::StatusCode::UNAVAILABLE,
+              "a new map has begun, but its file still holds the old one, which is tried on: " + saved.error().message};
+    }
     return grpc::Status::OK;
   });
 }

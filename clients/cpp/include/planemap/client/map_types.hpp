@@ -75,6 +75,7 @@ struct Status {
   double scan_ms_max = 0.0;
   std::int64_t last_scan_utime = 0;  ///< 0: none was mapped yet
   std::string idle_reason;           ///< why nothing is being mapped; empty while scans are mapped
+  std::string degraded;              ///< what the service cannot do at present; empty: nothing
   std::map<std::string, std::int64_t> counters;
 };
 
