@@ -64,7 +64,7 @@ void write_wall_log(const std::string& path, int scans) {
 
 TEST_F(CliTest, HelpAndVersionAreThereForEveryCommand) {
   for (const char* command : {"", "build", "status", "snapshot", "export", "nearest", "ray", "region", "plane",
-                              "floorplan", "watch", "pause", "resume", "reset", "save"}) {
+                              "floorplan", "watch", "pause", "resume", "reset", "save", "info", "recover"}) {
     const Finished outcome = planemap(std::string(command) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << command;
     EXPECT_NE(outcome.out.find("--help"), std::string::npos) << command;
@@ -88,6 +88,7 @@ TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"build '" + path("missing") + "'", "missing"},
       {"build " + log + " --export '" + path("map.xyz") + "'", ".svg"},
       {"build " + log + " --export '" + path("nowhere/map.json") + "'", "nowhere"},
+      {"build " + log + " --output '" + path("nowhere/a.planemap") + "'", "a.planemap: there is no folder "},
       {"build " + log + " --set grid.cell_sise_m=1", "cell_sise_m"},
       {"build " + log + " --set grid.cell_size_m=wide", "grid.cell_size_m"},
       {"build " + log + " --preset fancy", "fancy"},
@@ -201,6 +202,17 @@ TEST_F(CliTest, BuildsAWallFromALogTheSameTwice) {
     EXPECT_EQ(read_file(path(std::string("first") + extension)), read_file(path(std::string("second") + extension)))
         << extension;
   }
+}
+
+TEST_F(CliTest, AMapFileOfABuildExportsWhatTheBuildExports) {
+  write_wall_log(path("log"), 8);
+  const Finished built = planemap("build '" + path("log") + "' --output '" + path("wall.planemap") + "' --export '" +
+                                  path("built.json") + "' --set 'map.gravity=[0, 1, 0]'");
+  EXPECT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_NE(built.out.find("written: " + path("wall.planemap")), std::string::npos) << built.out;
+  const Finished exported = planemap("export '" + path("wall.planemap") + "' '" + path("exported.json") + "'");
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_EQ(read_file(path("exported.json")), read_file(path("built.json")));
 }
 
 TEST_F(CliTest, TheEpochNamesInputAndSettings) {

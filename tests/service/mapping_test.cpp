@@ -1,6 +1,4 @@
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -17,6 +14,7 @@
 #include "mapping/mapping_service.hpp"
 #include "mapping/scan_queue.hpp"
 #include "serve/status_board.hpp"
+#include "support/captured_log.hpp"
 #include "support/messages.hpp"
 
 namespace planemap::service {
@@ -258,25 +256,8 @@ TEST(MappingService, ANewMapBeginsThoughItsFirstScanFellOutOfTheQueue) {
   EXPECT_EQ(counters.value("scans.dropped.queue_full"), 1);
 }
 
-/// What is logged while it lives.
-class Log {
- public:
-  Log() : before_(spdlog::default_logger()) {
-    spdlog::set_default_logger(
-        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
-  }
-  ~Log() { spdlog::set_default_logger(before_); }
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
-  std::string text() const { return text_.str(); }
-
- private:
-  std::ostringstream text_;
-  std::shared_ptr<spdlog::logger> before_;
-};
-
 TEST(MappingService, NewMapsByTheDozenAreOneLineInTheLog) {
-  const Log log;
+  const CapturedLog log;
   Counters counters;
   ServiceConfig config;
   config.queue.scans = 1000;

@@ -84,7 +84,7 @@ void add_admin_commands(CLI::App& app, Action& action) {
   CLI::Option* map = command->add_option(
       "MAP", options->map, "Copy this file consistently, also while planemapd writes it; none: ask the daemon");
   CLI::Option* copy = command->add_option("OUT", options->copy, "The copy; written over");
-  map->needs(copy);
+  map->check(CLI::ExistingFile)->needs(copy);
   copy->needs(map);
 }
 

@@ -12,6 +12,7 @@
 #include "config/service_config.hpp"
 #include "export/export_map.hpp"
 #include "export/exporter.hpp"
+#include "store/map_reader.hpp"
 #include "store/map_store.hpp"
 
 namespace planemap::cli {
@@ -68,6 +69,9 @@ ExitCode run(const BuildOptions& options) {
   for (const std::string& output : options.outputs) {
     if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
   }
+  if (!options.map.empty()) {
+    if (const ExitCode usable = check_new_map_file(options.map); usable != ExitCode::kDone) return usable;
+  }
   auto config = service::load_config(options.config);
   if (!config) return complain(ExitCode::kWrongUse, config.error().message);
 
@@ -89,8 +93,7 @@ ExitCode run(const BuildOptions& options) {
     exported.push_back(output);
   }
   if (anything && !options.map.empty()) {
-    auto file = service::MapFile::create(options.map, service::facts_of(result->config));
-    const auto written = file ? file->close(result->snapshot) : tl::make_unexpected(file.error());
+    const auto written = service::write_map_file(options.map, service::facts_of(result->config), result->snapshot);
     if (!written) return complain(ExitCode::kFailed, written.error().message);
     exported.push_back(options.map);
   }

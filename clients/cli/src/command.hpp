@@ -30,6 +30,8 @@ void add_admin_commands(CLI::App& app, Action& action);
 /// info and recover.
 void add_map_commands(CLI::App& app, Action& action);
 
+/// Whether a map file could be written there, and none that is in use would be replaced; else says what is wrong.
+ExitCode check_new_map_file(const std::string& path);
 /// Copies a map file consistently, also one that planemapd is writing.
 ExitCode copy_map_file(const std::string& map, const std::string& copy);
 

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,9 @@ ExitCode run(const ExportOptions& options) {
     if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
   }
   if (options.from != "-") {
+    if (!std::filesystem::exists(options.from)) {
+      return complain(ExitCode::kWrongUse, options.from + ": there is no such file; '-' asks the running daemon");
+    }
     const auto stored = service::MapFile::read(options.from);
     if (!stored) return complain(ExitCode::kFailed, stored.error().message);
     return write(export_map_of(*stored->snapshot, stored->facts.frame, stored->facts.gravity_direction()), options);

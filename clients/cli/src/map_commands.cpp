@@ -11,6 +11,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "store/file_lock.hpp"
 #include "store/map_reader.hpp"
 
 namespace planemap::cli {
@@ -68,6 +69,7 @@ ExitCode info(const MapOptions& options) {
 }
 
 ExitCode recover(const MapOptions& options) {
+  if (ExitCode usable = check_new_map_file(options.out); usable != ExitCode::kDone) return usable;
   if (std::filesystem::exists(options.out)) return complain(ExitCode::kWrongUse, options.out + ": is there already");
   auto recovered = service::recover_map(options.map);
   if (!recovered) return complain(ExitCode::kFailed, recovered.error().message);
@@ -75,10 +77,10 @@ ExitCode recover(const MapOptions& options) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   auto parts = recovered->map.continued();
   parts.epoch = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
-  auto file = MapFile::create(options.out, recovered->map.facts);
-  if (!file) return complain(ExitCode::kFailed, file.error().message);
   const auto map = std::make_shared<const MapSnapshot>(std::move(parts));
-  if (auto written = file->close(map); !written) return complain(ExitCode::kFailed, written.error().message);
+  if (auto written = service::write_map_file(options.out, recovered->map.facts, map); !written) {
+    return complain(ExitCode::kFailed, written.error().message);
+  }
   std::printf("%s: %zu planes, %zu cells recovered; lost: %zu blocks, %zu planes\n", options.out.c_str(),
               map->planes().size(), map->cell_count(), recovered->lost_blocks, recovered->lost_planes);
   return ExitCode::kDone;
@@ -87,18 +89,32 @@ ExitCode recover(const MapOptions& options) {
 CLI::App* add(CLI::App& app, Action& action, const char* name, const char* help, ExitCode (*run)(const MapOptions&),
               const std::shared_ptr<MapOptions>& options) {
   CLI::App* command = app.add_subcommand(name, help);
-  command->add_option("MAP", options->map, "Map file")->required();
+  command->add_option("MAP", options->map, "Map file")->required()->check(CLI::ExistingFile);
   command->callback([options, run, &action] { action = [options, run] { return run(*options); }; });
   return command;
 }
 
 }  // namespace
 
+ExitCode check_new_map_file(const std::string& path) {
+  const auto folder = std::filesystem::absolute(path).parent_path();
+  std::error_code none;
+  if (!std::filesystem::is_directory(folder, none)) {
+    return complain(ExitCode::kWrongUse, path + ": there is no folder " + folder.string());
+  }
+  if (std::filesystem::is_directory(path, none)) return complain(ExitCode::kWrongUse, path + ": is a folder");
+  if (std::filesystem::exists(path + ".lock", none)) {
+    if (auto lock = service::FileLock::take(path); !lock) return complain(ExitCode::kFailed, lock.error().message);
+  }
+  return ExitCode::kDone;
+}
+
 ExitCode copy_map_file(const std::string& map, const std::string& copy) {
   std::error_code none;
   if (std::filesystem::equivalent(map, copy, none)) {
     return complain(ExitCode::kWrongUse, copy + ": a file cannot be copied onto itself");
   }
+  if (ExitCode usable = check_new_map_file(copy); usable != ExitCode::kDone) return usable;
   auto database = service::open_database(map, service::Database::Access::kRead);
   if (!database) return complain(ExitCode::kFailed, database.error().message);
   if (auto copied = service::copy_database(*database, copy); !copied) {

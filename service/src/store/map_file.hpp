@@ -64,7 +64,7 @@ class MapFile {
   /// A new file; what was there is written over. In WAL mode.
   static StoreExpected<MapFile> create(const std::filesystem::path& path, const MapFacts& facts);
   struct Opened;
-  /// Opens, migrates and verifies a file, to go on with it.
+  /// Opens, migrates and verifies a file, to go on with it; the first commit changes it.
   static StoreExpected<Opened> open(const std::filesystem::path& path);
   /// Reads a file without changing it; also one that a daemon is writing.
   static StoreExpected<StoredMap> read(const std::filesystem::path& path);
@@ -105,6 +105,7 @@ class MapFile {
   MapFacts facts_;
   std::shared_ptr<const MapSnapshot> last_;  ///< as committed; its blocks and records tell what changed since
   Rows rows_;
+  bool is_prepared_ = false;  ///< the connection is set up for commits
 };
 
 struct MapFile::Opened {

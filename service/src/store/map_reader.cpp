@@ -102,6 +102,9 @@ std::string immutable_uri(const fs::path& path) {
   return "file:" + escaped + "?immutable=1";
 }
 
+/// The smallest page that SQLite has.
+constexpr std::uintmax_t kLeastBytes = 512;
+
 /// Whether a file's first bytes are another format's, rather than those of a damaged database.
 bool is_something_else(const fs::path& path) {
   constexpr std::string_view kMagic("SQLite format 3\0", 16);
@@ -122,14 +125,22 @@ std::uint64_t whole_number(const std::string& digits) {
   return std::strtoull(digits.c_str(), nullptr, 10);
 }
 
+/// A finished file takes its name; what SQLite has beside a file that had it before would be taken for the new one's.
+void put_in_place(const fs::path& part, const fs::path& path) {
+  for (const char* suffix : {"-wal", "-shm", "-journal"}) fs::remove(path.string() + suffix);
+  fs::rename(part, path);
+}
+
 }  // namespace
 
 StoreExpected<Database> open_database(const fs::path& path, Database::Access access) {
   std::error_code problem;
   if (!fs::exists(path, problem)) return error_of(Kind::kSystem, path, "there is no such file");
   if (fs::is_directory(path, problem)) return error_of(Kind::kOther, path, "is a folder");
-  if (fs::file_size(path, problem) == 0 && !problem) return error_of(Kind::kDamaged, path, "the file is empty");
+  const auto size = fs::file_size(path, problem);
+  if (size == 0 && !problem) return error_of(Kind::kDamaged, path, "the file is empty");
   if (is_something_else(path)) return error_of(Kind::kOther, path, "is no map file: it is none of SQLite's databases");
+  if (size < kLeastBytes && !problem) return error_of(Kind::kDamaged, path, "the file is cut short");  // new, to SQLite
   try {
     const bool alone = access == Database::Access::kRead && !fs::exists(path.string() + "-wal");
     Database database(alone ? fs::path(immutable_uri(path)) : path, access);
@@ -179,7 +190,7 @@ StoreExpected<void> copy_database(Database& database, const fs::path& path) {
   const fs::path part = path.string() + ".part";
   try {
     database.copy_to(part);
-    fs::rename(part, path);
+    put_in_place(part, path);
     return {};
   } catch (const SqliteError& error) {
     std::error_code ignored;
@@ -187,6 +198,22 @@ StoreExpected<void> copy_database(Database& database, const fs::path& path) {
     return error_of(Kind::kSystem, path, fmt::format("the copy cannot be written: {}", error.what()));
   } catch (const fs::filesystem_error& error) {
     return error_of(Kind::kSystem, path, fmt::format("the copy cannot be written: {}", error.code().message()));
+  }
+}
+
+StoreExpected<void> write_map_file(const fs::path& path, const MapFacts& facts,
+                                   const std::shared_ptr<const MapSnapshot>& map) {
+  const fs::path part = path.string() + ".part";
+  try {
+    {
+      auto file = MapFile::create(part, facts);
+      if (!file) return tl::make_unexpected(file.error());
+      if (auto written = file->close(map); !written) return tl::make_unexpected(written.error());
+    }
+    put_in_place(part, path);
+    return {};
+  } catch (const fs::filesystem_error& error) {
+    return error_of(Kind::kSystem, path, fmt::format("the map cannot be written: {}", error.code().message()));
   }
 }
 

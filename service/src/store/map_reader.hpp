@@ -32,6 +32,10 @@ StoreExpected<ReadMap> read_map(Database& database, const std::filesystem::path&
 /// A consistent copy, which appears whole or not at all.
 StoreExpected<void> copy_database(Database& database, const std::filesystem::path& path);
 
+/// A map as a file that is closed in good order, which appears whole or not at all; what had its name is replaced.
+StoreExpected<void> write_map_file(const std::filesystem::path& path, const MapFacts& facts,
+                                   const std::shared_ptr<const MapSnapshot>& map);
+
 /// Takes out what is whole: blocks and planes whose checksums are right. Labels of planes that are lost are taken off;
 /// planes that lost cells go, too, and their cells are without a plane until they are seen again.
 struct Recovered {

@@ -107,7 +107,7 @@ void take_backup(MapStore& store, const ServiceConfig& config, std::uint64_t new
                 store.initial->planes().size(), store.initial->cell_count(), new_epoch);
 }
 
-Expected<void> go_on(MapStore& store, MapFile::Opened opened, const ServiceConfig& config) {
+Expected<void> go_on(MapStore& store, MapFile::Opened opened, const ServiceConfig& config, std::uint64_t new_epoch) {
   if (const std::string why = mismatch(opened.map, config); !why.empty()) {
     return fail(fmt::format("{}: {}; set that, or use another file", store.path.string(), why));
   }
@@ -117,7 +117,12 @@ Expected<void> go_on(MapStore& store, MapFile::Opened opened, const ServiceConfi
       "{}: going on with {} planes, {} cells, epoch {}, revision {}{}", store.path.string(),
       store.initial->planes().size(), store.initial->cell_count(), store.initial->epoch(), store.initial->revision(),
       opened.map.closed ? "" : "; it was not closed in good order, so ids and revisions skip what was reserved");
-  if (auto written = opened.file.commit(store.initial); !written) return fail(written.error().message);
+  if (auto written = opened.file.commit(store.initial); !written) {
+    store.problem = written.error().message;
+    store.initial = with_epoch(opened.map.continued(), new_epoch);
+    spdlog::error("{}; mapping goes on in a new epoch, {}, as nothing can be reserved in the old one", store.problem,
+                  new_epoch);
+  }
   store.file = std::make_unique<MapFile>(std::move(opened.file));
   return {};
 }
@@ -149,7 +154,8 @@ Expected<MapStore> open_store(const ServiceConfig& config, std::uint64_t new_epo
   }
   auto opened = MapFile::open(store.path);
   if (opened) {
-    if (auto good = go_on(store, std::move(*opened), config); !good) return tl::make_unexpected(good.error());
+    if (auto good = go_on(store, std::move(*opened), config, new_epoch); !good)
+      return tl::make_unexpected(good.error());
     return store;
   }
   if (opened.error().kind != Kind::kDamaged) return fail(opened.error().message);

@@ -23,11 +23,11 @@ struct MapStore {
   std::string problem;                         ///< why there is no file; empty: there is
 };
 
-/// Opens the file that the configuration names, or makes a new one; ids and revisions are reserved when this returns. A
+/// Opens the file that the configuration names, or makes a new one; ids and revisions are reserved when this returns,
+/// or the map is in a new epoch, and `problem` says why. A
 /// damaged file is set aside as PATH.damaged-UTC, said loudly; the map is then that of PATH.backup in a new epoch,
 /// else empty. The error says why the service must not start: a newer format, another program's file, a map of
-/// another frame or cell size, a file that another process has open, or one that is there and cannot be read or
-/// written.
+/// another frame or cell size, a file that another process has open, or one that is there and cannot be read.
 /// @param new_epoch  of a map that begins, below 2^53, greater than those of all before
 Expected<MapStore> open_store(const ServiceConfig& config, std::uint64_t new_epoch);
 

@@ -18,7 +18,8 @@ Bytes packed(std::span<const std::uint8_t> raw) {
   writer.put(static_cast<std::uint32_t>(raw.size()));
   Bytes& bytes = writer.bytes();
   bytes.resize(kHeadBytes + size);
-  if (compress2(bytes.data() + kHeadBytes, &size, raw.data(), static_cast<uLong>(raw.size()), Z_BEST_SPEED) != Z_OK) {
+  if (compress2(bytes.data() + kHeadBytes, &size, raw.data(), static_cast<uLong>(raw.size()), Z_DEFAULT_COMPRESSION) !=
+      Z_OK) {
     throw std::runtime_error("zlib cannot compress: out of memory");
   }
   bytes.resize(kHeadBytes + size);

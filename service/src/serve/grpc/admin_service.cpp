@@ -19,9 +19,8 @@ grpc::ServerUnaryReactor* AdminService::Save(grpc::CallbackServerContext* contex
                                              v1::SaveResponse*) {
   return answer(desk_, context, Scope::kAdmin, [this, context]() -> grpc::Status {
     spdlog::info("gRPC: {} asks for the map to be saved", context->peer());
-    const bool has_file = mapping_.has_keeper();
     if (const auto saved = mapping_.save(kSaveTimeout); !saved) {
-      return {has_file ? grpc::StatusCode::UNAVAILABLE : grpc::StatusCode::FAILED_PRECONDITION, saved.error().message};
+      return {grpc::StatusCode::FAILED_PRECONDITION, saved.error().message};
     }
     return grpc::Status::OK;
   });
@@ -38,7 +37,7 @@ grpc::ServerUnaryReactor* AdminService::Reset(grpc::CallbackServerContext* conte
     response->set_epoch(*epoch);
     if (!mapping_.has_keeper()) return grpc::Status::OK;
     if (const auto saved = mapping_.save(kSaveTimeout); !saved) {  // else a crash would bring the old map back
-      return {grpc::StatusCode::UNAVAILABLE,
+      return {grpc::StatusCode::FAILED_PRECONDITION,
               "a new map has begun, but its file still holds the old one, which is tried on: " + saved.error().message};
     }
     return grpc::Status::OK;
