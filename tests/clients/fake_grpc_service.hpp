@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -67,11 +68,13 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
   /// What Watch says to each caller before it falls silent.
   void say(std::vector<v1::WatchEvent> events) { events_ = std::move(events); }
   int watches() const { return watches_; }
+  /// Each GetStatus, and each Watch after what it was to say, ends so.
+  void end_with(grpc::Status status) { end_ = std::move(status); }
 
   grpc::Status GetStatus(grpc::ServerContext*, const v1::GetStatusRequest*, v1::GetStatusResponse* response) override {
     hold(is_holding_);
     response->mutable_map()->set_epoch(7);
-    return grpc::Status::OK;
+    return end_.value_or(grpc::Status::OK);
   }
   grpc::Status GetSnapshot(grpc::ServerContext*, const v1::GetSnapshotRequest*,
                            grpc::ServerWriter<v1::SnapshotPage>* writer) override {
@@ -97,6 +100,7 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
                      grpc::ServerWriter<v1::WatchEvent>* writer) override {
     ++watches_;
     for (const auto& event : events_) writer->Write(event);
+    if (end_) return *end_;
     std::unique_lock lock(mutex_);
     while (!context->IsCancelled()) released_.wait_for(lock, std::chrono::milliseconds(5));
     return grpc::Status::CANCELLED;
@@ -117,6 +121,7 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
   std::atomic<int> watches_ = 0;
   std::vector<v1::SnapshotPage> pages_;
   std::vector<v1::WatchEvent> events_;
+  std::optional<grpc::Status> end_;  ///< set before anybody calls
   std::string address_;
   std::unique_ptr<grpc::Server> server_;
 };

@@ -107,6 +107,22 @@ TEST(GrpcMapClient, WaitsNoLongerThanItsTimeout) {
   fake.release_calls();
 }
 
+TEST(GrpcMapClient, SaysHowTheServiceEndedACall) {
+  const auto told = [](const grpc::Status& status) {
+    FakeGrpcService fake;
+    fake.end_with(status);
+    const auto answer = client_of(fake.address())->status(kLong);
+    EXPECT_FALSE(answer);
+    return std::pair(answer.error().kind, answer.error().message.substr(answer.error().message.find(": ") + 2));
+  };
+  const auto cancelled = told({grpc::StatusCode::CANCELLED, "of its own"});
+  EXPECT_EQ(cancelled.first, Kind::kUnreachable) << "asking again may help";
+  EXPECT_NE(cancelled.second.find(" ended the call (of its own)"), std::string::npos) << cancelled.second;
+  const auto internal = told({grpc::StatusCode::INTERNAL, "it broke"});
+  EXPECT_EQ(internal.first, Kind::kMalformed);
+  EXPECT_EQ(internal.second, "it broke (gRPC status 13); is a planemapd listening there?");
+}
+
 TEST(GrpcMapClient, SaysThatAnAnswerCameInPart) {
   FakeGrpcService fake;
   fake.add_page();  // not the last

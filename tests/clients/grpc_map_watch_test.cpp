@@ -190,6 +190,18 @@ TEST(GrpcMapWatch, CanBePolled) {
   EXPECT_TRUE(is_there);
 }
 
+TEST(GrpcMapWatch, IsOpenedAgainWhereAServiceThatEndsCancelsIt) {
+  FakeGrpcService fake;
+  fake.end_with({grpc::StatusCode::CANCELLED, "of its own"});
+  const auto client = client_of(fake.address());
+  const auto watch = client->watch();
+  const auto silent = watch->next(milliseconds(500));
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().kind, Kind::kUnreachable);
+  EXPECT_EQ(silent.error().message, "the service at " + fake.address() + " ended the call (of its own)");
+  EXPECT_GE(fake.watches(), 2);
+}
+
 v1::WatchEvent event_at(std::uint64_t revision) {
   v1::WatchEvent event;
   event.mutable_map()->set_epoch(7);

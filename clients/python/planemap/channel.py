@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from pathlib import Path
 from typing import Any, Callable, TypeVar, Union
@@ -23,7 +24,7 @@ _OPTIONS = (
     ("grpc.keepalive_timeout_ms", 5000),
     ("grpc.http2.max_pings_without_data", 0),
     ("grpc.initial_reconnect_backoff_ms", 100),
-    ("grpc.max_reconnect_backoff_ms", 2000),
+    ("grpc.max_reconnect_backoff_ms", 500),
 )
 
 Result = TypeVar("Result")
@@ -71,18 +72,31 @@ class Channel:
                 "or to the loopback only"
             )
         self.metadata = [("authorization", f"Bearer {token}")] if token is not None else []
-        options = list(_OPTIONS)
+        self._options: list[tuple[str, Any]] = list(_OPTIONS)
+        self._credentials: grpc.ChannelCredentials | None = None
         if self.has_tls:
-            credentials = grpc.ssl_channel_credentials(
+            self._credentials = grpc.ssl_channel_credentials(
                 _text("ca_file", ca_file), _text("key_file", key_file), _text("certificate_file", certificate_file)
             )
             if server_name is not None:
-                options.append(("grpc.ssl_target_name_override", server_name))  # type: ignore[arg-type]
-            self.channel = grpc.secure_channel(self.server, credentials, options)
-        else:
-            self.channel = grpc.insecure_channel(self.server, options)
+                self._options.append(("grpc.ssl_target_name_override", server_name))
+        self.is_closed = False
+        self.channel = self._open()
+
+    def again(self) -> Channel:
+        """The same way to the same server, over a new connection. One that was cut off connects again by itself, but not
+        before it has waited, and only while a call is polled: a watch took up to eight seconds."""
+        other = copy.copy(self)
+        other.channel = other._open()
+        return other
+
+    def _open(self) -> grpc.Channel:
+        if self._credentials is None:
+            return grpc.insecure_channel(self.server, self._options)
+        return grpc.secure_channel(self.server, self._credentials, self._options)
 
     def close(self) -> None:
+        self.is_closed = True
         self.channel.close()
 
     def error_of(self, error: grpc.RpcError, timeout_s: float) -> PlanemapError:

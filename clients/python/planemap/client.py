@@ -103,6 +103,10 @@ class Client:
         self._map: Any = planemap_service_pb2_grpc.PlaneMapStub(channel.channel)  # type: ignore[no-untyped-call]
         self._admin: Any = admin_service_pb2_grpc.AdminStub(channel.channel)  # type: ignore[no-untyped-call]
 
+    def _again(self) -> Client:
+        """The same over a new connection."""
+        return Client(self._channel.again(), self._timeout_s)
+
     def __enter__(self) -> Client:
         return self
 
@@ -110,7 +114,7 @@ class Client:
         self.close()
 
     def close(self) -> None:
-        """Closes the connection; watches end."""
+        """Closes the connection; watches end, and further calls raise ValueError."""
         self._channel.close()
 
     def status(self) -> Status:
@@ -266,7 +270,7 @@ class Client:
 
         silent_after_s: nothing was heard of the service for so long: next() raises Unreachable.
         """
-        return Watch(self._channel, self._map, self.snapshot, silent_after_s)
+        return Watch(self, silent_after_s)
 
     def pause(self) -> None:
         """Scans are dropped until resume(). Needs a token of scope admin; without tokens, to be on its machine."""

@@ -49,6 +49,8 @@ def error_of(error: grpc.RpcError, server: str, has_tls: bool, timeout_s: float)
             f"no planemapd can be reached at {server}{' over TLS' if has_tls else ''} ({said}){hint}; "
             "is planemapd running, with grpc.listen there?"
         )
+    if code == grpc.StatusCode.CANCELLED:  # by the service: a gRPC server that ends does so with what is left
+        return Unreachable(f"the service at {server} ended the call ({said})")
     if code == grpc.StatusCode.DEADLINE_EXCEEDED:
         return Unreachable(f"no answer came from {server} within {timeout_s:g} s; a larger timeout_s waits longer")
     if code in (grpc.StatusCode.UNAUTHENTICATED, grpc.StatusCode.PERMISSION_DENIED):

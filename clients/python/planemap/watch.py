@@ -7,16 +7,18 @@ import threading
 import time
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Any, Callable, Iterator, Union
+from typing import TYPE_CHECKING, Any, Iterator, Union
 
 import grpc
 
 from planemap.v1 import map_pb2
 
 from . import decode
-from .channel import Channel
 from .errors import AnswerIncomplete, PlanemapError, Unreachable
 from .types import Map, Plane, RemovedPlane, Version
+
+if TYPE_CHECKING:
+    from .client import Client
 
 _CONNECT_AFTER_S = 0.2  # a stream that was cut off
 _LEAST_HEARTBEAT_S = 0.1
@@ -72,13 +74,16 @@ class _Stream:
             self._events.put(end)
 
 
+class _ClientClosed(ValueError):
+    pass
+
+
 class Watch:
     """Made by Client.watch(). Used by one thread."""
 
-    def __init__(
-        self, channel: Channel, stub: Any, snapshot: Callable[[], Map], silent_after_s: float
-    ) -> None:
-        self._channel, self._stub, self._snapshot = channel, stub, snapshot
+    def __init__(self, client: Client, silent_after_s: float) -> None:
+        self._client = client
+        self._own: Client | None = None  # once it was cut off: over a connection of its own
         self._silent_after_s = silent_after_s
         self._map: Map | None = None
         self._stream: _Stream | None = None
@@ -95,6 +100,7 @@ class Watch:
     def close(self) -> None:
         """Ends the call; the mirror stays."""
         self._drop_stream()
+        self._close_own()
 
     @property
     def map(self) -> Map:
@@ -104,9 +110,12 @@ class Watch:
         return self._map
 
     def __iter__(self) -> Iterator[Change]:
-        """Each change, without end."""
+        """Each change, until the client is closed."""
         while True:
-            change = self.next(self._silent_after_s)
+            try:
+                change = self.next(self._silent_after_s)
+            except _ClientClosed:
+                return
             if change is not None:
                 yield change
 
@@ -124,7 +133,7 @@ class Watch:
             if change:
                 return change
             if now - self._heard_at >= self._silent_after_s:
-                self._drop_stream()
+                self._connect_again()
                 self._heard_at = now  # the next call may wait as long again
                 raise self._silence(self._silent_after_s)
             if now >= deadline:
@@ -134,7 +143,7 @@ class Watch:
 
     def _silence(self, time_s: float) -> PlanemapError:
         return self._cut_off or Unreachable(
-            f"nothing was heard of a planemap service at {self._channel.server} for {time_s:g} s"
+            f"nothing was heard of a planemap service at {self._client._channel.server} for {time_s:g} s"
         )
 
     def _drop_stream(self) -> None:
@@ -144,7 +153,20 @@ class Watch:
         self._coming = []
         self._open_at = time.monotonic() + _CONNECT_AFTER_S
 
+    def _close_own(self) -> None:
+        own, self._own = self._own, None
+        if own is not None:
+            own.close()
+
+    def _connect_again(self) -> None:
+        self._drop_stream()
+        self._close_own()
+        self._own = self._client._again()
+
     def _step(self, until: float) -> Change | None:
+        if self._client._channel.is_closed:
+            self.close()
+            raise _ClientClosed("the client of this watch is closed")
         if self._stream is None:
             now = time.monotonic()
             if now < self._open_at:
@@ -168,16 +190,18 @@ class Watch:
         request = map_pb2.WatchRequest(heartbeat_s=heartbeat_s)
         if self._map is not None:
             request.epoch, request.since_revision = self._map.version.epoch, self._map.version.revision
-        self._stream = _Stream(self._stub.Watch(request, metadata=self._channel.metadata))
+        client = self._own or self._client
+        self._stream = _Stream(client._map.Watch(request, metadata=client._channel.metadata))
 
     def _take_end(self, error: grpc.RpcError | None) -> None:
         self._drop_stream()
-        if error is None:
-            self._cut_off = Unreachable(f"{self._channel.server} ended the watch")
+        channel = self._client._channel
+        if channel.is_closed:
             return
-        reason = self._channel.error_of(error, 0.0)
+        reason = Unreachable(f"{channel.server} ended the watch") if error is None else channel.error_of(error, 0.0)
         if not isinstance(reason, Unreachable):
             raise reason
+        self._connect_again()
         self._cut_off = reason
 
     def _take(self, event: map_pb2.WatchEvent) -> Change | None:
@@ -188,9 +212,9 @@ class Watch:
     def _take_snapshot(self) -> Change | None:
         self._coming = []
         try:
-            fresh = self._snapshot()
+            fresh = (self._own or self._client).snapshot()
         except (Unreachable, AnswerIncomplete) as error:  # a new stream asks for it again
-            self._drop_stream()
+            self._connect_again()
             self._cut_off = error
             return None
         old, self._map = self._map, fresh

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import queue
 import threading
 import time
 
 import planemap
 from daemon import PATIENCE_S, Daemon
+
+
+HEALS_WITHIN_S = 3.0  # from when the new daemon listens; by gRPC's own ways of connecting again it took up to eight
 
 
 def next_change(watch: planemap.Watch) -> planemap.Change:
@@ -62,6 +66,43 @@ def test_the_mirror_keeps_up_with_the_map_and_a_restart() -> None:
         client.close()
     finally:
         daemon.stop()
+
+
+def test_who_sits_in_next_goes_on_with_each_restarted_daemon() -> None:
+    daemon = Daemon()
+    client = planemap.connect(daemon.server)
+    news: queue.Queue[planemap.Change | Exception | None] = queue.Queue()
+
+    def sit() -> None:
+        try:
+            for change in client.watch():
+                news.put(change)
+            news.put(None)
+        except Exception as error:
+            news.put(error)
+
+    sitter = threading.Thread(target=sit)
+    sitter.start()
+    epochs: list[int] = []
+    try:
+        for _ in range(4):
+            begin = time.monotonic()
+            change = news.get(timeout=PATIENCE_S)
+            assert isinstance(change, planemap.Change), change
+            assert time.monotonic() - begin < HEALS_WITHIN_S
+            assert change.new_map
+            epochs.append(change.version.epoch)
+            assert client.status().version.epoch == epochs[-1], "other questions are answered again, too"
+            daemon.stop()
+            daemon = Daemon(server=daemon.server)
+        assert epochs == sorted(set(epochs))
+        assert isinstance(news.get(timeout=PATIENCE_S), planemap.Change)
+        client.close()
+        assert news.get(timeout=PATIENCE_S) is None, "the watch ends with its client"
+    finally:
+        daemon.stop()
+        sitter.join(PATIENCE_S)
+    assert not sitter.is_alive()
 
 
 def test_iterating_gives_each_change(client: planemap.Client) -> None:

@@ -72,6 +72,10 @@ bool tell(const client::MapChange& change, const client::Map& map, bool json) {
 ExitCode run(const WatchCommand& command) {
   const auto client = connect(command.query.daemon, std::max(command.query.daemon.timeout(), kSilentAfter));
   if (!client) return client.error();
+  // A watch would wait for a daemon that is not there.
+  if (const auto status = (*client)->status(command.query.daemon.timeout()); !status) {
+    return complain(status.error(), command.query.daemon);
+  }
   std::signal(SIGINT, [](int) { g_is_stopped = 1; });
   std::signal(SIGTERM, [](int) { g_is_stopped = 1; });
   const auto watch = (*client)->watch();

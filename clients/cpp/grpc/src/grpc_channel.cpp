@@ -65,7 +65,7 @@ std::shared_ptr<grpc::Channel> channel_to(const ServerAddress& address, const Gr
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5000);
   arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 500);
   if (options.has_tls() && !options.server_name.empty()) arguments.SetSslTargetNameOverride(options.server_name);
   return grpc::CreateCustomChannel(address.text(), credentials_of(options), arguments);
 }
@@ -77,6 +77,10 @@ GrpcChannel::GrpcChannel(ServerAddress address, GrpcClientOptions options)
   const auto channel = channel_to(address_, options_);
   plane_map_ = v1::PlaneMap::NewStub(channel);
   admin_ = v1::Admin::NewStub(channel);
+}
+
+std::shared_ptr<GrpcChannel> GrpcChannel::connect_again() const {
+  return std::make_shared<GrpcChannel>(address_, options_);
 }
 
 void GrpcChannel::prepare(grpc::ClientContext& context) const {
@@ -93,6 +97,9 @@ Error GrpcChannel::error_of(const grpc::Status& status, std::chrono::millisecond
   switch (status.error_code()) {
     case StatusCode::UNAVAILABLE:
       return {Kind::kUnreachable, "no planemapd can be reached at " + server() + unreachable_how(options_, said)};
+    // Nobody but the service cancels calls that are told of here: a gRPC server that ends does so with what is left.
+    case StatusCode::CANCELLED:
+      return {Kind::kUnreachable, "the service at " + server() + " ended the call (" + said + ")"};
     case StatusCode::DEADLINE_EXCEEDED:
       return {Kind::kUnreachable, "no answer came from " + server() + " within " + seconds_text(timeout)};
     case StatusCode::UNAUTHENTICATED:

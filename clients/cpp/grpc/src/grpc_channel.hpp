@@ -24,6 +24,10 @@ class GrpcChannel {
   /// HOST:PORT
   std::string server() const { return address_.text(); }
 
+  /// The same way to the same server, over a new connection. One that was cut off connects again by itself, but not
+  /// before it has waited, and only while a call is polled: a watch took up to eight seconds.
+  std::shared_ptr<GrpcChannel> connect_again() const;
+
   /// Puts what each call brings into a context: token and deadline.
   void prepare(grpc::ClientContext& context, std::chrono::milliseconds timeout) const;
   /// The same for a call without end.

@@ -130,7 +130,8 @@ GrpcMapWatch::News GrpcMapWatch::take_end(const grpc::Status& status) {
 
 /// The stream then asks for a snapshot itself, if one is needed.
 void GrpcMapWatch::open_again_later() {
-  stream_ = nullptr;
+  stream_ = nullptr;  // first: it is of the channel
+  channel_ = channel_->connect_again();
   coming_.reset();
   needs_snapshot_ = false;
   open_at_ = Clock::now() + channel_->options().connect_after;

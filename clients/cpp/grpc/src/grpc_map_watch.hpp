@@ -35,8 +35,8 @@ class GrpcMapWatch final : public MapWatch {
   void open_again_later();
   Error silence(std::chrono::milliseconds time) const;
 
-  std::shared_ptr<GrpcChannel> channel_;
-  std::unique_ptr<WatchStream> stream_;  ///< nullptr: there is none, or it has ended
+  std::shared_ptr<GrpcChannel> channel_;  ///< the client's; once cut off, one of its own
+  std::unique_ptr<WatchStream> stream_;   ///< nullptr: there is none, or it has ended
   Clock::time_point open_at_;
   Clock::time_point heard_at_;     ///< of the service
   Clock::time_point listened_at_;  ///< when next() last looked
