@@ -164,7 +164,7 @@ TEST_F(Asking, ADaemonIsPausedResumedAndReset) {
   EXPECT_EQ(status()["planeCount"], 0);
   const Finished save = admin("save");
   EXPECT_EQ(save.exit_code, 1);
-  EXPECT_NE(save.err.find("the service cannot do that: "), std::string::npos) << save.err;
+  EXPECT_NE(save.err.find("the map has no file: planemapd --map FILE"), std::string::npos) << save.err;
 }
 
 TEST_F(Asking, WhatIsWrongIsSaidInWords) {

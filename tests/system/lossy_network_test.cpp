@@ -99,6 +99,7 @@ class LossyNetwork : public SystemTest {
   void follow(client::MapWatch& watch, Process& kinect) {
     const auto end = std::chrono::steady_clock::now() + 90s;
     bool is_done = false;
+    std::int64_t ended_utime = 0;  // when the bridge was seen to have ended
     while (!is_done) {
       ASSERT_LT(std::chrono::steady_clock::now(), end)
           << "the mirror of epoch " << watch.map().epoch << " revision " << watch.map().revision
@@ -107,9 +108,15 @@ class LossyNetwork : public SystemTest {
       ASSERT_TRUE(change) << change.error().message;
       EXPECT_EQ(change->revision, watch.map().revision);
       bus_->listen_for(1ms);
-      is_done = !kinect.running() && bus_->status() && bus_->counter("scans.waiting") == 0 &&
-                bus_->status()->epoch == watch.map().epoch && bus_->status()->revision == watch.map().revision &&
-                change->empty();
+      if (ended_utime == 0 && !kinect.running()) {
+        ended_utime =
+            std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+                .count();
+      }
+      // A status may be lost, too: one from before the last scans says nothing.
+      const bool at_rest = ended_utime != 0 && bus_->status() && bus_->status()->utime > ended_utime + 500'000;
+      is_done = at_rest && bus_->counter("scans.waiting") == 0 && bus_->status()->epoch == watch.map().epoch &&
+                bus_->status()->revision == watch.map().revision && change->empty();
     }
   }
   static void expect_same_planes(const client::Map& mirror, const client::Map& map) {

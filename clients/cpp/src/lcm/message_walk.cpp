@@ -14,7 +14,7 @@ constexpr std::size_t kStringLeastBytes = 4 + 1;
 constexpr std::size_t kPolygonLeastBytes = 4 + 4;
 constexpr std::size_t kPlaneLeastBytes = kPlaneHeadBytes + kStringLeastBytes + kPlaneTailBytes + 4;
 constexpr std::size_t kCounterLeastBytes = kStringLeastBytes + 8;
-constexpr std::size_t kStatusLeastBytes = 8 + 5 * 8 + 3 * 8 + 8 + 2 * kStringLeastBytes + 4;
+constexpr std::size_t kStatusLeastBytes = 8 + 5 * 8 + 3 * 8 + 8 + 3 * kStringLeastBytes + 4;
 constexpr std::size_t kReplyHeadBytes = 5 * 8 + 2 * 4 + 1;  // fingerprint to status
 
 constexpr std::size_t kNearPlaneBytes = 4 + 8 + 4 * 8 + 3 * 8 + 3 * 8 + 1;
@@ -55,7 +55,8 @@ void walk_status(WireCursor& cursor) {
   cursor.skip(8);
   cursor.string();
   cursor.skip(5 * 8 + 3 * 8 + 8);
-  cursor.string();
+  cursor.string();  // idle_reason
+  cursor.string();  // degraded
   walk_list(cursor, kCounterLeastBytes, [](WireCursor& counter) {
     counter.string();
     counter.skip(8);
