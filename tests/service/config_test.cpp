@@ -288,7 +288,8 @@ TEST(Config, WhatTheHttpServerCannotDoIsRefused) {
     const char* problem;
   } cases[] = {
       {{"http.listen=0.0.0.0:7671"},
-       "http.listen: 0.0.0.0:7671 can be reached from other machines, and there it is plain text that anybody may read; "
+       "http.listen: 0.0.0.0:7671 can be reached from other machines, and there it is plain text that anybody may "
+       "read; "
        "http.allow_remote: true allows it (or listen on 127.0.0.1)"},
       {{"http.listen=7671"}, "http.listen: '7671' is no HOST:PORT: it has no port"},
       {{"http.max_connections=8", "http.max_event_streams=8"},
