@@ -299,7 +299,7 @@ TEST_F(GrpcTokens, OfScopeAdminChangeWhatTheServiceDoes) {
   const auto epoch = by_admin.reset(kLong);
   ASSERT_TRUE(epoch) << epoch.error().message;
   EXPECT_GT(*epoch, 1234);
-  expect_error(by_admin.save(kLong), Kind::kRefused, "the service cannot do that: ");
+  expect_error(by_admin.save(kLong), Kind::kRefused, "the map has no file: planemapd --map FILE");
 }
 
 }  // namespace
