@@ -19,6 +19,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/clock.hpp"
 #include "common/version.hpp"
 #include "config/service_config.hpp"
 #include "ingest/kernel_drops.hpp"
@@ -67,8 +68,7 @@ void define_options(CLI::App& app, Arguments& arguments) {
 
 /// Microseconds since 1970, so a later life of the map has a greater epoch; below 2^53 for two centuries more.
 std::uint64_t new_epoch() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  return static_cast<std::uint64_t>(utime_now());
 }
 
 std::string text_of(const char* path) {

@@ -9,6 +9,7 @@
 #include "build/build_run.hpp"
 #include "build/build_summary.hpp"
 #include "command.hpp"
+#include "config/map_gravity.hpp"
 #include "config/service_config.hpp"
 #include "export/export_map.hpp"
 #include "export/exporter.hpp"
@@ -48,12 +49,6 @@ Expected<BuildInput> input_of(const BuildOptions& options) {
   return input;
 }
 
-std::optional<Eigen::Vector3d> gravity_of(const service::ServiceConfig& config) {
-  const auto& gravity = config.map.gravity;
-  if (gravity.size() != 3) return std::nullopt;
-  return Eigen::Vector3d(gravity[0], gravity[1], gravity[2]);
-}
-
 /// Whether the settings of scans and poses that come as messages are other than the defaults.
 bool has_message_settings(const service::ServiceConfig& config) {
   service::ServiceConfig plain = config;
@@ -85,7 +80,7 @@ ExitCode run(const BuildOptions& options) {
   const auto result = build_map(*input, std::move(*config), !options.quiet);
   if (!result) return complain(ExitCode::kFailed, result.error().message);
   const bool anything = result->mapped() > 0;
-  const ExportMap map = export_map_of(*result->snapshot, result->config.map.frame, gravity_of(result->config));
+  const ExportMap map = export_map_of(*result->snapshot, result->config.map.frame, gravity_of(result->config.map));
   std::vector<std::string> exported;
   for (const std::string& output : options.outputs) {
     if (!anything) break;

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "common/clock.hpp"
 #include "store/file_lock.hpp"
 #include "store/map_reader.hpp"
 
@@ -74,9 +74,8 @@ ExitCode recover(const MapOptions& options) {
   auto recovered = service::recover_map(options.map);
   if (!recovered) return complain(ExitCode::kFailed, recovered.error().message);
   // A life of its own: the damaged map's later revisions were seen, and are lost.
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
   auto parts = recovered->map.continued();
-  parts.epoch = static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  parts.epoch = static_cast<std::uint64_t>(service::utime_now());
   const auto map = std::make_shared<const MapSnapshot>(std::move(parts));
   if (auto written = service::write_map_file(options.out, recovered->map.facts, map); !written) {
     return complain(ExitCode::kFailed, written.error().message);

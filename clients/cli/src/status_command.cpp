@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "command.hpp"
 #include "daemon_options.hpp"
+#include "export/status_json.hpp"
 
 namespace planemap::cli {
 namespace {
@@ -16,23 +16,6 @@ struct StatusOptions {
   DaemonOptions daemon;
   bool json = false;
 };
-
-std::string json_text(const client::Status& status) {
-  const nlohmann::ordered_json json = {{"version", status.version},
-                                       {"utime", status.utime},
-                                       {"epoch", status.epoch},
-                                       {"revision", status.revision},
-                                       {"planeCount", status.plane_count},
-                                       {"cellCount", status.cell_count},
-                                       {"blockCount", status.block_count},
-                                       {"scanRateHz", status.scan_rate_hz},
-                                       {"scanMs", {{"p50", status.scan_ms_p50}, {"max", status.scan_ms_max}}},
-                                       {"lastScanUtime", status.last_scan_utime},
-                                       {"idleReason", status.idle_reason},
-                                       {"degraded", status.degraded},
-                                       {"counters", status.counters}};
-  return json.dump() + '\n';
-}
 
 std::int64_t sum_of(const client::Status& status, const std::string& prefix) {
   std::int64_t sum = 0;
@@ -69,7 +52,7 @@ ExitCode run(const StatusOptions& options) {
   if (!client) return client.error();
   const auto status = (*client)->status(options.daemon.timeout());
   if (!status) return complain(status.error(), options.daemon);
-  std::fputs((options.json ? json_text(*status) : plain_text(*status)).c_str(), stdout);
+  std::fputs((options.json ? status_json(*status) + '\n' : plain_text(*status)).c_str(), stdout);
   return ExitCode::kDone;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/map_gravity.hpp"
+
 namespace planemap::service {
 namespace {
 
@@ -11,9 +13,7 @@ constexpr std::size_t kKept = 2;
 
 }  // namespace
 
-PlaneBook::PlaneBook(const MapConfig& config) {
-  if (config.gravity.size() == 3) gravity_ = Eigen::Map<const Eigen::Vector3d>(config.gravity.data());
-}
+PlaneBook::PlaneBook(const MapConfig& config) : gravity_(gravity_of(config)) {}
 
 std::shared_ptr<const SnapshotQueries> PlaneBook::open(const std::shared_ptr<const MapSnapshot>& snapshot) {
   const std::lock_guard lock(mutex_);

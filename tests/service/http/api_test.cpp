@@ -302,7 +302,7 @@ TEST(HttpApi, TellsTheStatusAsTheCommandLineDoes) {
   site.room().look_at_floor();
   const Json status = Json::parse(site.get("/api/v1/status").body);
   for (const char* key : {"version", "utime", "epoch", "revision", "planeCount", "cellCount", "blockCount",
-                          "scanRateHz", "scanMs", "lastScanUtime", "idleReason", "counters"}) {
+                          "scanRateHz", "scanMs", "lastScanUtime", "idleReason", "degraded", "counters"}) {
     EXPECT_TRUE(status.contains(key)) << key;
   }
   EXPECT_EQ(status.at("counters").at("scans.mapped"), 1);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "codec/proto_status_codec.hpp"
+#include "common/clock.hpp"
 #include "config/listen_address.hpp"
 #include "serve/grpc/admin_service.hpp"
 #include "serve/grpc/connection_gate.hpp"
@@ -65,11 +66,6 @@ void set_up_grpc() {
 
 Expected<CallGuard> guard_of(const GrpcConfig& config) {
   return config.token_file.empty() ? CallGuard() : CallGuard::from_file(config.token_file);
-}
-
-std::int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace

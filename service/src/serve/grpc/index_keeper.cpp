@@ -7,15 +7,16 @@
 #include <exception>
 #include <utility>
 
+#include "config/map_gravity.hpp"
+
 namespace planemap::service {
 
 IndexKeeper::IndexKeeper(const ServiceConfig& config, const MappingService& mapping, OnIndex on_index)
     : mapping_(mapping),
+      gravity_(gravity_of(config.map)),
       index_age_s_(config.grpc.index_age_s),
       watch_period_s_(config.grpc.watch_period_s),
       on_index_(std::move(on_index)) {
-  const auto& gravity = config.map.gravity;
-  if (gravity.size() == 3) gravity_ = Eigen::Map<const Eigen::Vector3d>(gravity.data());
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 

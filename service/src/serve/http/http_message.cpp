@@ -1,10 +1,11 @@
 #include "serve/http/http_message.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <zlib.h>
 
 #include <nlohmann/json.hpp>
 #include <string_view>
+
+#include "serve/http/gzip.hpp"
 
 namespace planemap::service {
 namespace {
@@ -37,23 +38,6 @@ const char* reason_of(unsigned status) {
     default:
       return "Internal Server Error";
   }
-}
-
-/// Empty where zlib has no memory.
-std::string gzip(const std::string& text) {
-  constexpr int kGzipWindow = 15 + 16;
-  constexpr int kMemory = 8;
-  z_stream stream{};
-  if (deflateInit2(&stream, kFast, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) return {};
-  std::string out(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));  // zlib does not write there
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int result = deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return result == Z_STREAM_END ? out : std::string();
 }
 
 }  // namespace
@@ -101,7 +85,7 @@ HttpAnswer compressed(HttpAnswer answer, const HttpRequest& request) {
   if (!request.accepts_gzip || answer.is_gzip || !answer.body || answer.body->size() < kLeastCompressedBytes) {
     return answer;
   }
-  std::string packed = gzip(*answer.body);
+  std::string packed = gzip(*answer.body, kFast);
   if (packed.empty() || packed.size() >= answer.body->size()) return answer;
   answer.body = std::make_shared<const std::string>(std::move(packed));
   answer.is_gzip = true;

@@ -4,14 +4,15 @@
 
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <sstream>
 #include <utility>
 
+#include "common/clock.hpp"
+#include "config/map_gravity.hpp"
 #include "export/formats.hpp"
+#include "export/status_json.hpp"
 #include "serve/http/assets.hpp"
 #include "serve/http/cells_blob.hpp"
-#include "serve/http/status_json.hpp"
 #include "service.hpp"
 
 namespace planemap::service {
@@ -45,16 +46,6 @@ struct Export {
 constexpr std::array kExports = {
     Export{"planes.json", kJson, write_planes_json}, Export{"planes.ply", kBinary, write_planes_ply},
     Export{"planes.obj", "model/obj", write_planes_obj}, Export{"planes.svg", "image/svg+xml", write_floor_plan_svg}};
-
-std::optional<Eigen::Vector3d> gravity_of(const MapConfig& config) {
-  if (config.gravity.size() != 3) return std::nullopt;
-  return Eigen::Vector3d(config.gravity[0], config.gravity[1], config.gravity[2]);
-}
-
-std::int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 /// What is behind a prefix; empty where the text does not begin so.
 std::string_view behind(std::string_view text, std::string_view prefix) {

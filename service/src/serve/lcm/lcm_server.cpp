@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/background.hpp"
+#include "common/clock.hpp"
 
 namespace planemap::service {
 namespace {
@@ -17,11 +18,6 @@ constexpr std::size_t kMaxJobs = 16;      // answers that wait for their turn on
 constexpr int kNice = 5;                  // of both threads: a third of the mapper's share of a core that is full
 constexpr double kLogPeriodS = 1.0;
 constexpr double kWarnPeriodS = 5.0;
-
-std::int64_t utime_now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 

@@ -1,7 +1,5 @@
 // Writes the files of a folder into a C++ source, compressed: embed_assets FOLDER OUTPUT. Part of the build.
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -15,9 +13,13 @@
 #include <string_view>
 #include <vector>
 
+#include "serve/http/gzip.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kBest = 9;  // of zlib's levels
 
 const std::map<std::string, const char*> kContentTypes = {{".css", "text/css; charset=utf-8"},
                                                           {".html", "text/html; charset=utf-8"},
@@ -29,25 +31,6 @@ const std::map<std::string, const char*> kContentTypes = {{".css", "text/css; ch
                                                           {".txt", "text/plain; charset=utf-8"},
                                                           {".webmanifest", "application/manifest+json"},
                                                           {".woff2", "font/woff2"}};
-
-std::string gzip(const std::string& text) {
-  constexpr int kGzipWindow = 15 + 16;
-  constexpr int kMemory = 8;
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindow, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
-    throw std::runtime_error("zlib has no memory");
-  }
-  std::string out(deflateBound(&stream, text.size()) + 32, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));  // zlib does not write there
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int result = deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (result != Z_STREAM_END) throw std::runtime_error("zlib failed");
-  return out;
-}
 
 /// FNV-1a: names a content among the few of a file, and is the same on every machine.
 std::string hash_of(std::string_view text) {
@@ -90,7 +73,8 @@ void embed(const fs::path& folder, const fs::path& output) {
     std::ostringstream content;
     content << std::ifstream(file, std::ios::binary).rdbuf();
     const std::string text = content.str();
-    const std::string packed = gzip(text);
+    const std::string packed = planemap::service::gzip(text, kBest);
+    if (packed.empty()) throw std::runtime_error("zlib has no memory");
     out << "  {\"/" << fs::relative(file, folder).generic_string() << "\", \"" << content_type_of(file) << "\", \"\\\""
         << hash_of(text) << "\\\"\",";
     write_literal(out, packed);
