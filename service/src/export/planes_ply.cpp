@@ -1,26 +1,16 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <string>
 
+#include "common/byte_stream.hpp"
 #include "export/colour.hpp"
 #include "export/formats.hpp"
 #include "export/mesh.hpp"
 
 namespace planemap {
-namespace {
-
-static_assert(std::endian::native == std::endian::little, "the file says little endian");
-
-template <class T>
-void put(std::ostream& out, T value) {
-  out.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-}  // namespace
-
 void write_planes_ply(const ExportMap& map, std::ostream& out) {
   std::vector<PlaneMesh> meshes;
   meshes.reserve(map.planes.size());
@@ -38,26 +28,28 @@ void write_planes_ply(const ExportMap& map, std::ostream& out) {
                  "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                  "element face {}\nproperty list uchar int vertex_indices\nproperty int plane_id\nend_header\n",
                  map.epoch, map.revision, vertices, triangles);
+  service::ByteWriter<std::string> body;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const PlaneRecord& record = map.planes[i].record;
     const Colour colour = colour_of(record.id);
     for (const Eigen::Vector3d& p_m : meshes[i].vertices_m) {
-      for (const double x : p_m) put(out, static_cast<float>(x));
-      for (const double x : record.plane.normal()) put(out, static_cast<float>(x));
-      put(out, colour.red);
-      put(out, colour.green);
-      put(out, colour.blue);
+      for (const double x : p_m) body.put(static_cast<float>(x));
+      for (const double x : record.plane.normal()) body.put(static_cast<float>(x));
+      body.put(colour.red);
+      body.put(colour.green);
+      body.put(colour.blue);
     }
   }
   std::uint32_t before = 0;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     for (const auto& triangle : meshes[i].triangles) {
-      put(out, std::uint8_t{3});
-      for (const std::uint32_t vertex : triangle) put(out, static_cast<std::int32_t>(before + vertex));
-      put(out, static_cast<std::int32_t>(map.planes[i].record.id));
+      body.put(std::uint8_t{3});
+      for (const std::uint32_t vertex : triangle) body.put(static_cast<std::int32_t>(before + vertex));
+      body.put(static_cast<std::int32_t>(map.planes[i].record.id));
     }
     before += static_cast<std::uint32_t>(meshes[i].vertices_m.size());
   }
+  out << body.bytes();
 }
 
 }  // namespace planemap

@@ -155,8 +155,8 @@ void visit_columns(Visit&& column) {
 
 /// The two streams of bytes that a block becomes.
 struct Streams {
-  ByteWriter smooth;
-  ByteWriter noise;
+  ByteWriter<> smooth;
+  ByteWriter<> noise;
 };
 
 /// Byte by byte of all numbers.
@@ -223,7 +223,7 @@ Bytes encode_block(const Block& block) {
     put_bytes(streams, numbers, column.bytes, column.smooth_bytes);
   });
   const Bytes smooth = packed(streams.smooth.bytes());
-  ByteWriter all;
+  ByteWriter<> all;
   all.put(static_cast<std::uint32_t>(smooth.size()));
   all.bytes().insert(all.bytes().end(), smooth.begin(), smooth.end());
   all.bytes().insert(all.bytes().end(), streams.noise.bytes().begin(), streams.noise.bytes().end());

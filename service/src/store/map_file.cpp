@@ -83,7 +83,8 @@ MapFile::MapFile(const std::filesystem::path& path, Database database)
 
 StoreExpected<MapFile> MapFile::create(const std::filesystem::path& path, const MapFacts& facts) {
   try {
-    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) std::filesystem::remove(path.string() + suffix);
+    std::filesystem::remove(path);
+    for (const char* suffix : kSqliteSuffixes) std::filesystem::remove(path.string() + suffix);
     Database database(path, Database::Access::kCreate);
     database.execute("PRAGMA page_size=1024");  // what does not fill a page is lost: 5 B a cell more at 4096
     database.execute(fmt::format("PRAGMA application_id={}", kApplicationId));

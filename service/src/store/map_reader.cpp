@@ -127,7 +127,7 @@ std::uint64_t whole_number(const std::string& digits) {
 
 /// A finished file takes its name; what SQLite has beside a file that had it before would be taken for the new one's.
 void put_in_place(const fs::path& part, const fs::path& path) {
-  for (const char* suffix : {"-wal", "-shm", "-journal"}) fs::remove(path.string() + suffix);
+  for (const char* suffix : kSqliteSuffixes) fs::remove(path.string() + suffix);
   fs::rename(part, path);
 }
 

@@ -3,7 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <zlib.h>
 
-#include "store/byte_stream.hpp"
+#include "common/byte_stream.hpp"
 
 namespace planemap::service {
 namespace {
@@ -18,7 +18,7 @@ std::uint32_t checksum(std::span<const std::uint8_t> head, std::span<const std::
 
 std::uint32_t block_checksum(std::int64_t slot, const BlockIndex& index, std::size_t cells,
                              std::span<const std::uint8_t> bytes) {
-  ByteWriter head;
+  ByteWriter<> head;
   head.put(slot);
   for (const int i : index) head.put(static_cast<std::int32_t>(i));
   head.put(static_cast<std::uint64_t>(cells));
@@ -26,13 +26,13 @@ std::uint32_t block_checksum(std::int64_t slot, const BlockIndex& index, std::si
 }
 
 std::uint32_t plane_checksum(PlaneId id, std::span<const std::uint8_t> bytes) {
-  ByteWriter head;
+  ByteWriter<> head;
   head.put(id);
   return checksum(head.bytes(), bytes);
 }
 
 std::uint32_t removed_checksum(const RemovedPlane& removed) {
-  ByteWriter head;
+  ByteWriter<> head;
   head.put(removed.id);
   head.put(removed.merged_into);
   head.put(removed.revision);

@@ -40,7 +40,7 @@ fs::path set_aside(const fs::path& path, const char* why) {
   std::error_code problem;
   fs::rename(path, aside, problem);
   if (problem) return {};
-  for (const char* suffix : {"-wal", "-shm", "-journal"}) {
+  for (const char* suffix : kSqliteSuffixes) {
     std::error_code none;
     fs::rename(path.string() + suffix, aside.string() + suffix, none);
   }

@@ -14,7 +14,7 @@ constexpr std::size_t kHeadBytes = 4;
 
 Bytes packed(std::span<const std::uint8_t> raw) {
   uLongf size = compressBound(static_cast<uLong>(raw.size()));
-  ByteWriter writer;
+  ByteWriter<> writer;
   writer.put(static_cast<std::uint32_t>(raw.size()));
   Bytes& bytes = writer.bytes();
   bytes.resize(kHeadBytes + size);

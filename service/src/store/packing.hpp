@@ -4,7 +4,7 @@
 #include <planemap/expected.hpp>
 #include <span>
 
-#include "store/byte_stream.hpp"
+#include "common/byte_stream.hpp"
 
 namespace planemap::service {
 

@@ -39,7 +39,7 @@ void visit_numbers(Record& record, State& state, Visit&& visit) {
 }  // namespace
 
 Bytes encode_plane(const PlaneRecord& record) {
-  ByteWriter writer;
+  ByteWriter<> writer;
   for (const double x : record.plane.normal()) writer.put(x);
   writer.put(record.plane.d());
   visit_numbers(record, *record.state, [&](auto number) { writer.put(number); });

@@ -5,7 +5,7 @@
 #include <planemap/plane.hpp>
 #include <span>
 
-#include "store/byte_stream.hpp"
+#include "common/byte_stream.hpp"
 
 namespace planemap::service {
 

@@ -12,6 +12,9 @@ struct sqlite3_stmt;
 
 namespace planemap::service {
 
+/// What SQLite may have beside a database, in names that begin with its own.
+constexpr const char* kSqliteSuffixes[] = {"-wal", "-shm", "-journal"};
+
 /// What SQLite could not do.
 class SqliteError : public std::runtime_error {
  public:

@@ -3,7 +3,7 @@
 #include <limits>
 #include <planemap/block.hpp>
 
-#include "serve/http/binary_writer.hpp"
+#include "common/byte_stream.hpp"
 
 namespace planemap::service {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x434D4C50;  // "PLMC"
 constexpr std::uint32_t kVersion = 1;
 
-void put_cell(BinaryWriter& out, const CellView& cell) {
+void put_cell(ByteWriter<std::string>& out, const CellView& cell) {
   for (const double x : cell.centre_m) out.put(static_cast<float>(x));
   const Eigen::Vector3d normal = cell.normal.value_or(Eigen::Vector3d::Zero());
   for (const double x : normal) out.put(static_cast<float>(x));
@@ -25,7 +25,7 @@ std::string cells_blob(const MapSheet& sheet, std::optional<std::uint64_t> since
   const MapSnapshot& snapshot = sheet.snapshot();
   const std::uint64_t known = since.value_or(0);
   const bool is_full = !since.has_value() || known < sheet.complete_since() || known > snapshot.revision();
-  BinaryWriter out;
+  ByteWriter<std::string> out;
   out.put(kMagic);
   out.put(kVersion);
   out.put(snapshot.epoch());
@@ -49,14 +49,14 @@ std::string cells_blob(const MapSheet& sheet, std::optional<std::uint64_t> since
       ++cell_count;
     }
     if (cell_count == 0 && is_full) {  // who gets all blocks has none to take back
-      out.truncate(begin);
+      out.bytes().resize(begin);
       continue;
     }
     out.patch(cell_count_at, cell_count);
     ++block_count;
   }
   out.patch(block_count_at, block_count);
-  return out.take();
+  return std::move(out.bytes());
 }
 
 }  // namespace planemap::service

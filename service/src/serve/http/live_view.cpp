@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "serve/http/binary_writer.hpp"
+#include "common/byte_stream.hpp"
 
 namespace planemap::service {
 namespace {
@@ -52,8 +52,8 @@ std::string json_of(const SensorPose& pose) {
 
 std::string scan_blob_of(const Scan& scan, const Eigen::Isometry3d& T_world_sensor, const SensorConfig& sensor) {
   const Eigen::Isometry3f T = T_world_sensor.cast<float>();
-  BinaryWriter out;
-  out.reserve(24 + 12 * LiveView::kScanPoints);
+  ByteWriter<std::string> out;
+  out.bytes().reserve(24 + 12 * LiveView::kScanPoints);
   out.put(kMagic);
   out.put(kVersion);
   out.put(utime_of(scan));
@@ -69,7 +69,7 @@ std::string scan_blob_of(const Scan& scan, const Eigen::Isometry3d& T_world_sens
   };
   std::visit([&](const auto& points) { visit_points(points, sensor, put); }, scan);
   out.patch(count_at, count);
-  return out.take();
+  return std::move(out.bytes());
 }
 
 void LiveView::on_mapped(const MappedScan& mapped) {

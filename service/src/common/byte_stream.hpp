@@ -9,24 +9,31 @@
 
 namespace planemap::service {
 
-static_assert(std::endian::native == std::endian::little, "map files are little-endian");
+static_assert(std::endian::native == std::endian::little, "map files and bodies over HTTP are little-endian");
 
 using Bytes = std::vector<std::uint8_t>;
 
 /// Writes numbers one after the other, little-endian.
+/// @tparam Storage  what they are written into: Bytes or std::string
+template <class Storage = Bytes>
 class ByteWriter {
  public:
   template <class T>
   void put(T value) {
     static_assert(std::is_arithmetic_v<T>);
-    std::uint8_t raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    bytes_.insert(bytes_.end(), raw, raw + sizeof(T));
+    bytes_.resize(bytes_.size() + sizeof(T));
+    patch(bytes_.size() - sizeof(T), value);
   }
-  Bytes& bytes() { return bytes_; }
+  /// Overwrites what was put at a place.
+  template <class T>
+  void patch(std::size_t at, T value) {
+    std::memcpy(bytes_.data() + at, &value, sizeof(T));
+  }
+  std::size_t size() const { return bytes_.size(); }
+  Storage& bytes() { return bytes_; }
 
  private:
-  Bytes bytes_;
+  Storage bytes_;
 };
 
 /// Reads them. Past the end it gives zeros, and ok() is false from then on.
