@@ -55,7 +55,7 @@ TEST_F(MapCommands, InfoSaysWhatIsInTheFile) {
 TEST_F(MapCommands, ExportWritesTheFilesMap) {
   const Finished exported = planemap({"export", path_, out("a.json"), out("a.csv")});
   EXPECT_EQ(exported.exit_code, 0) << exported.err;
-  const auto json = nlohmann::json::parse(service::bytes_of(out("a.json")));
+  const auto json = nlohmann::json::parse(read_file(out("a.json")));
   EXPECT_EQ(json["frame"], "hall");
   EXPECT_EQ(json["epoch"], 77);
   ASSERT_EQ(json["planes"].size(), map_->planes().size());

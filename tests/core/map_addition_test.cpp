@@ -15,17 +15,15 @@ namespace {
 using testing::degrees_between;
 using testing::looking;
 using testing::render;
-using testing::Wall;
 using Snapshot = std::shared_ptr<const MapSnapshot>;
 
-const std::vector<Wall> kRoom = {{{0, 0, 1}, 0.0}, {{-1, 0, 0}, 2.5}, {{0, -1, 0}, 2.0}, {{0, 1, 0}, 2.0}};
 constexpr int kScans = 24;
 
 /// Scan number `step` of a camera that turns from the left wall to the right one.
 void look(Mapper& mapper, int step, const Eigen::Isometry3d& T_map_room = Eigen::Isometry3d::Identity()) {
   const double y = -1.8 + 3.6 * step / (kScans - 1);
   const auto T = looking({-1.0, 0.0, 1.2}, {1.0, y, 0.6});
-  mapper.integrate(render(kRoom, T, static_cast<std::uint64_t>(step), 1.0, 160, 120), T_map_room * T);
+  mapper.integrate(render(testing::small_room(), T, static_cast<std::uint64_t>(step), 1.0, 160, 120), T_map_room * T);
 }
 
 Mapper mapped(int first, int last, std::uint64_t epoch,

@@ -11,18 +11,10 @@ namespace {
 
 using testing::looking;
 using testing::render;
-using testing::Wall;
-
-const std::vector<Wall>& room() {
-  static const std::vector<Wall> walls = {{{0, 0, 1}, 0.0}, {{-1, 0, 0}, 2.5}, {{0, -1, 0}, 2.0}, {{0, 1, 0}, 2.0}};
-  return walls;
-}
 
 /// A look around the room, one scan a step.
 void look(Mapper& mapper, int step) {
-  const double turn = 0.1 * step;
-  const auto T = looking({-1.0, 0.0, 1.2}, {1.0, 1.5 * std::sin(turn), 0.8});
-  mapper.integrate(render(room(), T, static_cast<std::uint64_t>(step), 1.0, 160, 120), T);
+  testing::look(mapper, step, /*turn_rad=*/0.1);
 }
 
 Mapper mapped(int scans, const MapperConfig& config = {}) {
@@ -110,7 +102,7 @@ TEST(MapperRestore, GoesOnAsIfNeverStopped) {
 TEST(MapperRestore, NewPlanesGetIdsBehindTheReservedOnes) {
   Mapper first(MapperConfig{}, 1);
   const auto T = looking({0, 0, 1.2}, {1.5, 0, 0});
-  first.integrate(render({room()[0]}, T, 1), T);
+  first.integrate(render({testing::small_room()[0]}, T, 1), T);
   MapSnapshot::Parts parts;
   const auto snapshot = first.snapshot();
   parts.cell_size_m = snapshot->cell_size_m();

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <planemap/mapper.hpp>
 #include <planemap/scan.hpp>
 #include <random>
 #include <vector>
@@ -82,6 +84,27 @@ inline PointScan cloud_of(const DepthScan& scan) {
     }
   }
   return cloud;
+}
+
+/// A room of a floor and three walls, open to one side.
+inline const std::vector<Wall>& small_room() {
+  static const std::vector<Wall> walls = {{{0, 0, 1}, 0.0}, {{-1, 0, 0}, 2.5}, {{0, -1, 0}, 2.0}, {{0, 1, 0}, 2.0}};
+  return walls;
+}
+
+/// One more look around it.
+/// @param turn_rad  of a step
+inline void look(Mapper& mapper, int step, double turn_rad = 0.3) {
+  const auto T = looking({-1.0, 0.0, 1.2}, {1.0, 1.5 * std::sin(turn_rad * step), 0.8});
+  mapper.integrate(render(small_room(), T, static_cast<std::uint64_t>(step), 1.0, 160, 120), T);
+}
+
+/// The map after so many looks.
+inline std::shared_ptr<const MapSnapshot> looked_around(std::uint64_t epoch, int looks,
+                                                        const MapperConfig& config = {}) {
+  Mapper mapper(config, epoch);
+  for (int i = 0; i < looks; ++i) look(mapper, i);
+  return mapper.snapshot();
 }
 
 }  // namespace planemap::testing

@@ -23,6 +23,7 @@
 #include "store/map_file.hpp"
 #include "store/plane_row_codec.hpp"
 #include "support/messages.hpp"
+#include "support/process.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace planemap::fuzz {
@@ -209,11 +210,6 @@ void add_protos(Seeds& seeds) {
   seeds.add("proto_messages", 4, service::to_proto(map).SerializeAsString());
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 void add_map_files(Seeds& seeds, const std::shared_ptr<const MapSnapshot>& map) {
   for (std::size_t i = 0; i < map->blocks().size(); i += 5) {
     seeds.add("map_rows", 0, service::encode_block(*map->blocks()[i]));
@@ -224,7 +220,7 @@ void add_map_files(Seeds& seeds, const std::shared_ptr<const MapSnapshot>& map) 
   auto file = service::MapFile::create(path, {"hall", "0 0 -1", "config", ""});
   if (!file) throw std::runtime_error(file.error().message);
   if (const auto closed = file->close(map); !closed) throw std::runtime_error(closed.error().message);
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = read_file(path);
   seeds.add("map_file", Input(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
 }
 

@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryBound bound(decoding_bound(message.size()));
   auto reply = client::decode_reply(message);
   auto delta = client::decode_delta(message);
-  const auto version = client::decode_status_version(message);
+  (void)client::decode_status_version(message);
   bound.check("decoding");
   if (reply) {
     client::PageCollector pages(reply->request_id);
@@ -28,5 +28,5 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     client::DeltaCollector deltas;
     deltas.add(std::move(*delta));
   }
-  return version || !version ? 0 : 0;
+  return 0;
 }

@@ -13,6 +13,7 @@
 #include "small_maps.hpp"
 #include "store/map_reader.hpp"
 #include "support/captured_log.hpp"
+#include "support/process.hpp"
 #include "support/room_service.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -196,7 +197,7 @@ TEST_F(MapSavers, AFileThatCameMeanwhileIsLeftAlone) {
   ASSERT_FALSE(saved);
   EXPECT_EQ(saved.error().message, path_.string() + ": a file has come that is not this map's; it is left alone");
   kept.stop();
-  EXPECT_EQ(bytes_of(path_), "somebody's");
+  EXPECT_EQ(read_file(path_), "somebody's");
 }
 
 TEST(MappingService, SaysThatNobodyKeepsItsMap) {

@@ -12,6 +12,7 @@
 #include "small_maps.hpp"
 #include "store/map_reader.hpp"
 #include "support/captured_log.hpp"
+#include "support/process.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace planemap::service {
@@ -81,47 +82,47 @@ TEST_F(MapStores, AnotherProcesssFileIsRefused) {
 
 TEST_F(MapStores, AMapOfAnotherFrameIsRefusedAndLeftAlone) {
   write(path_);
-  const std::string before = bytes_of(path_);
+  const std::string before = read_file(path_);
   config_.map.frame = "cellar";
   EXPECT_EQ(refused(),
             path_.string() +
                 ": its frame is 'world', the configuration's 'cellar' (map.frame); set that, or use another file");
-  EXPECT_TRUE(bytes_of(path_) == before);
+  EXPECT_TRUE(read_file(path_) == before);
 }
 
 TEST_F(MapStores, AMapOfOtherCellsIsRefusedAndLeftAlone) {
   write(path_);
-  const std::string before = bytes_of(path_);
+  const std::string before = read_file(path_);
   config_.mapper.grid.cell_size_m = 0.05;
   EXPECT_EQ(refused(),
             path_.string() +
                 ": its cells are 0.08 m wide, the configuration's 0.05 m (grid.cell_size_m); set that, or use "
                 "another file");
-  EXPECT_TRUE(bytes_of(path_) == before);
+  EXPECT_TRUE(read_file(path_) == before);
 }
 
 TEST_F(MapStores, ANewerFormatIsRefusedAndLeftAlone) {
   write(path_);
   Database(path_, Database::Access::kWrite)
       .execute("PRAGMA user_version=2; UPDATE meta SET value='2' WHERE key='format'");
-  const std::string before = bytes_of(path_);
+  const std::string before = read_file(path_);
   EXPECT_EQ(refused(), path_.string() +
                            ": was written by a newer planemap (format 2, this one knows up to 1): use that version, or "
                            "another file");
-  EXPECT_TRUE(bytes_of(path_) == before);
+  EXPECT_TRUE(read_file(path_) == before);
 }
 
 TEST_F(MapStores, AFileThatIsNoDatabaseIsRefusedAndLeftAlone) {
   folder_.write("hall.planemap", "Notes of the hall: it has a floor.\n");
   EXPECT_EQ(refused(), path_.string() + ": is no map file: it is none of SQLite's databases");
-  EXPECT_EQ(bytes_of(path_), "Notes of the hall: it has a floor.\n");
+  EXPECT_EQ(read_file(path_), "Notes of the hall: it has a floor.\n");
 }
 
 TEST_F(MapStores, ADamagedFileIsSetAsideAndTheBackupGoesOnInANewEpoch) {
   write(path_, 3);
   const auto older = write(path_.string() + ".backup", 2);
   damage(path_);
-  const std::string before = bytes_of(path_);
+  const std::string before = read_file(path_);
   std::string said;
   std::optional<MapStore> store;
   {
@@ -133,7 +134,7 @@ TEST_F(MapStores, ADamagedFileIsSetAsideAndTheBackupGoesOnInANewEpoch) {
   }
   const auto aside = beginning("hall.planemap.damaged-2");
   ASSERT_TRUE(aside);
-  EXPECT_TRUE(bytes_of(*aside) == before);
+  EXPECT_TRUE(read_file(*aside) == before);
   EXPECT_NE(
       said.find("THE MAP FILE IS DAMAGED: " + path_.string() + ": block 3: its checksum is wrong. It is kept as " +
                 aside->string() + "; 'planemap recover " + aside->string() + " -o OUT' takes out what is whole"),
