@@ -116,18 +116,16 @@ void MapAddition::add_cell(UncertainGrid& grid, PlaneMap& planes, const Block& b
   added_.push_back({ref, theirs.plane});
 }
 
-std::size_t MapAddition::batch_count() const {
-  const std::size_t whole = (cells_.size() + kBatchCells - 1) / kBatchCells;
-  return cells_.empty() ? 0 : 2 * whole + 1;
+std::size_t MapAddition::whole_batches() const {
+  return (cells_.size() + kBatchCells - 1) / kBatchCells;
 }
 
 void MapAddition::begin_batch(std::size_t batch, UncertainGrid& grid, std::vector<CellChange>& changes) const {
-  const std::size_t whole = (cells_.size() + kBatchCells - 1) / kBatchCells;
-  // The second time the first batch is half as long.
-  const std::size_t begin = batch < whole    ? batch * kBatchCells
-                            : batch == whole ? 0
-                                             : (batch - whole) * kBatchCells - kBatchCells / 2;
-  const std::size_t end = batch == whole ? kBatchCells / 2 : begin + kBatchCells;
+  // The second time all batches begin, and the first one ends, half a batch earlier.
+  const bool again = batch >= whole_batches();
+  const std::size_t earlier = again ? kBatchCells / 2 : 0;
+  const std::size_t end = ((again ? batch - whole_batches() : batch) + 1) * kBatchCells - earlier;
+  const std::size_t begin = end < kBatchCells ? 0 : end - kBatchCells;
   changes.clear();
   for (std::size_t i = std::min(begin, cells_.size()); i < std::min(end, cells_.size()); ++i) {
     grid.writable(cells_[i]).working = static_cast<std::uint32_t>(changes.size());

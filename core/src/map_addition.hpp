@@ -35,7 +35,7 @@ class MapAddition {
 
   /// Batches of cells that got points, neighbours mostly in one batch: all cells twice, the second time cut elsewhere,
   /// so that what was at the rim of a batch is inside of one.
-  std::size_t batch_count() const;
+  std::size_t batch_count() const { return cells_.empty() ? 0 : 2 * whole_batches() + 1; }
   /// Fills `changes` with the cells of a batch, and makes them working ones.
   void begin_batch(std::size_t batch, UncertainGrid& grid, std::vector<CellChange>& changes) const;
   /// What stands for the scan that saw the cells of a batch: where they were seen from, about, and when.
@@ -50,6 +50,7 @@ class MapAddition {
     PlaneSlot theirs;  ///< plane of their cell
     bool operator<(const Added& other) const { return ours < other.ours; }
   };
+  std::size_t whole_batches() const;
   void add_cell(UncertainGrid& grid, PlaneMap& planes, const Block& block, std::size_t ordinal);
 
   const MapSnapshot& other_;

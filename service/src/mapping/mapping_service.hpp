@@ -54,9 +54,8 @@ struct MappedScan {
 /// The map, on a thread of its own: takes registered scans, publishes a snapshot after each. Readers never wait for it.
 class MappingService {
  public:
-  /// @param epoch        names the life of a map that begins, below 2^53; scans of map number n (RegisteredScan) go
-  /// into
-  ///                     the map of epoch + n
+  /// @param epoch        names the life of a map that begins, below 2^53; scans of map number n (RegisteredScan) are
+  ///                     mapped into that of epoch + n
   /// @param on_snapshot  called on the mapper's thread after each new snapshot; must return at once and throw nothing;
   ///                     may be empty
   /// @param initial      map to go on with, in its own epoch; maps that begin after it are of greater epochs than

@@ -32,9 +32,8 @@ class MapSheet {
   const std::string* plane_json(PlaneId id) const;
   /// What brings a reader of this epoch from a revision to this sheet, as the JSON of a delta event: whole planes, ids
   /// that are no more, and how many blocks of cells have changed.
-  /// @param since  revision of the reader's sheet; empty: it has none, or of another epoch. Where what has changed
-  /// since
-  ///               is not known any more, the delta is full, too.
+  /// @param since  revision of the reader's sheet; empty: it has none, or of another epoch. The delta is full, too,
+  ///               where it is not known any more what has changed since.
   std::shared_ptr<const std::string> delta_json(std::optional<std::uint64_t> since) const;
   /// For each block of the snapshot: the revision since which its cells are as they are, or a later one. Whoever has
   /// the blocks of a sheet of revision R needs those with a greater one.
