@@ -212,13 +212,13 @@ void MappingService::map(const RegisteredScan& scan) {
     mapped_at_host_s_.push_back(end_s);
     std::erase_if(mapped_at_host_s_, [&](double at_s) { return at_s < end_s - kRateWindowS; });
   }
-  counters_.scan_mapped(report.points);
-  counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));
   const auto& ms = timer.ms();
   {
     const std::lock_guard lock(listener_mutex_);
     if (scan_listener_) scan_listener_({scan, first_epoch_ + map_number_ + resets_, ms, 1e3 * (end_s - begin_s)});
   }
+  counters_.add("cells.worn", static_cast<std::int64_t>(report.worn_cells));
+  counters_.scan_mapped(report.points);  // last: whoever sees it counted finds it everywhere
   spdlog::trace(
       "scan {}: {} points, {} cells, {:.2f} ms (assign {:.2f}, normals {:.2f}, local {:.2f}, global {:.2f}, "
       "wear {:.2f}, snapshot {:.2f})",

@@ -70,8 +70,9 @@ class MappingService {
   /// Queues a scan; if the queue is full, its oldest one is dropped and counted. A scan of a greater map number than
   /// those before begins a new map. From any thread.
   void push(RegisteredScan&& scan);
-  /// Told of each mapped scan, on the mapper's thread, once its snapshot is there; must return at once and throw
-  /// nothing. Empty: nobody is told; once this has returned, the one before is not called any more. From any thread.
+  /// Told of each mapped scan, on the mapper's thread, once its snapshot is there and before it is counted; must return
+  /// at once and throw nothing. Empty: nobody is told; once this has returned, the one before is not called any more.
+  /// From any thread.
   void set_scan_listener(std::function<void(const MappedScan&)> listener);
   /// The newest snapshot, never nullptr; immutable. From any thread.
   std::shared_ptr<const MapSnapshot> snapshot() const;
