@@ -39,6 +39,16 @@ class RoomService {
   /// @param down  which way the picture's y goes; unit, square on forward
   void look(const Eigen::Vector3d& from_m, const Eigen::Vector3d& forward,
             const Eigen::Vector3d& down = -Eigen::Vector3d::UnitZ()) {
+    send_look(from_m, forward, down);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (service_.counters().at("scans.mapped") < looks_) {
+      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("RoomService: a scan was not mapped");
+      service_.handle(5);
+    }
+  }
+  /// The same without waiting: the scan and its pose are on the bus, not yet handled.
+  void send_look(const Eigen::Vector3d& from_m, const Eigen::Vector3d& forward,
+                 const Eigen::Vector3d& down = -Eigen::Vector3d::UnitZ()) {
     ++looks_;
     const std::int64_t utime = 10'000'000 + 1'000'000 * looks_;
     Eigen::Matrix3d R;
@@ -52,11 +62,6 @@ class RoomService {
     pose.orientation[3] = q.z();
     send("POSE", encoded(pose));
     send("PLANEMAP_SCAN", encoded(zipped(wall_message(utime, static_cast<std::int32_t>(looks_)))));
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (service_.counters().at("scans.mapped") < looks_) {
-      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error("RoomService: a scan was not mapped");
-      service_.handle(5);
-    }
   }
   /// The floor about the origin, from 1 m above.
   void look_at_floor() { look({0.0, 0.0, 1.0}, -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX()); }

@@ -1,5 +1,6 @@
 // The server itself: life, health, and what it refuses.
 
+#include <atomic>
 #include <future>
 #include <thread>
 
@@ -164,8 +165,16 @@ TEST(Health, TellsAMapperThatHangs) {
   const Health health(room.service().mapping(), 2.0);
   std::promise<void> release;
   const auto released = release.get_future().share();
-  room.service().mapping().set_scan_listener([released](const MappedScan&) { released.wait(); });
-  room.look_at_floor();  // it is mapped, and the mapper hangs before it is done with it
+  std::atomic<bool> hangs = false;
+  room.service().mapping().set_scan_listener([released, &hangs](const MappedScan&) {
+    hangs = true;
+    released.wait();
+  });
+  room.send_look({0.0, 0.0, 1.0}, -Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitX());
+  ASSERT_TRUE(eventually([&] {
+    room.service().handle(5);
+    return hangs.load();
+  }));
   const double now_s = steady_now_s();
   EXPECT_TRUE(health.liveness(now_s).is_good);
   const HealthReport report = health.liveness(now_s + 100.0);
