@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs clang-tidy over our own sources, with the compile commands of a build: tidy.sh BUILD_DIR [FILE_PATTERN]
-# Every finding is an error (.clang-tidy).
+# Every finding is an error (.clang-tidy). TIDY_ANALYZER=deep lets the analyzer follow calls further, in twice the time.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 
@@ -26,7 +26,9 @@ trap 'rm -rf "$work_dir"' EXIT
 log=$work_dir/log
 # GCC's precompiled headers are nothing to clang; and each file must include what it uses.
 sed 's# -Winvalid-pch -include [^ ]*/cmake_pch\.hxx# #' "$build_dir/compile_commands.json" >"$work_dir/compile_commands.json"
-if printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$work_dir" --quiet >"$log" 2>/dev/null; then
+analyzer=(--extra-arg=-Xclang --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=mode="${TIDY_ANALYZER:-shallow}")
+if printf '%s\0' "${files[@]}" |
+  xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$work_dir" --quiet "${analyzer[@]}" >"$log" 2>/dev/null; then
   exit 0
 fi
 sort -u "$log" | grep --extended-regexp 'error:|warning:' || cat "$log"

@@ -10,6 +10,9 @@ namespace {
 
 /// Blocks have room for a multiple of so many cells, and for one more than they hold.
 constexpr std::size_t kRoomStep = 8;
+/// Longer than readers keep a snapshot in turn, such as the saver for its interval: what they give back is needed
+/// again.
+constexpr std::uint64_t kSharesToATrim = 256;
 
 }  // namespace
 
@@ -132,6 +135,8 @@ std::shared_ptr<Block> UncertainGrid::take_block(std::size_t cells) {
 void UncertainGrid::share(BlockTable& table) {
   table_.share(table);
   ++shares_;
+  if (shares_ % kSharesToATrim != 0) return;
+  for (Pool<Block>& pool : pools_) pool.trim();
 }
 
 }  // namespace planemap

@@ -53,5 +53,24 @@ TEST(Pool, TheLastHolderMayBeOnAnotherThread) {
   EXPECT_EQ(pool.waiting(), 1U);
 }
 
+TEST(Pool, TrimFreesHalfOfWhatWaitedAllTheTime) {
+  Pool<Thing> pool;
+  std::vector<std::shared_ptr<Thing>> held;
+  for (int i = 0; i < 10; ++i) held.push_back(pool.take());
+  held.clear();
+  EXPECT_EQ(pool.waiting(), 10U);
+  pool.trim();
+  EXPECT_EQ(pool.waiting(), 10U) << "just before all were in use";
+  for (int i = 0; i < 4; ++i) held.push_back(pool.take());
+  held.clear();
+  pool.trim();
+  EXPECT_EQ(pool.waiting(), 7U) << "of the 6 that nobody took";
+  pool.trim();
+  pool.trim();
+  pool.trim();
+  EXPECT_EQ(pool.waiting(), 0U);
+  EXPECT_NE(pool.take(), nullptr);
+}
+
 }  // namespace
 }  // namespace planemap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -29,6 +30,9 @@ class Pool {
   }
   /// Objects that wait.
   std::size_t waiting() const { return shelf_->waiting(); }
+  /// Frees half of the objects that have waited ever since the last call: who held more of them for a while, such as a
+  /// slow reader, does not hold their memory for ever.
+  void trim() { shelf_->trim(); }
 
  private:
   /// What goes with a pointer: its count, how it is returned, and who has the memory for that.
@@ -42,6 +46,7 @@ class Pool {
       if (objects_.empty()) return nullptr;
       auto object = std::move(objects_.back());
       objects_.pop_back();
+      fewest_ = std::min(fewest_, objects_.size());
       return object;
     }
     void put(std::unique_ptr<T> object) {
@@ -67,10 +72,20 @@ class Pool {
       const std::lock_guard lock(mutex_);
       return objects_.size();
     }
+    void trim() {
+      std::vector<std::unique_ptr<T>> surplus;
+      const std::lock_guard lock(mutex_);
+      for (std::size_t n = (fewest_ + 1) / 2; n > 0; --n) {
+        surplus.push_back(std::move(objects_.back()));
+        objects_.pop_back();
+      }
+      fewest_ = objects_.size();
+    }
 
    private:
     mutable std::mutex mutex_;
     std::vector<std::unique_ptr<T>> objects_;
+    std::size_t fewest_ = 0;  ///< objects that waited at once, since trim()
     std::vector<std::unique_ptr<Control>> controls_;
   };
 

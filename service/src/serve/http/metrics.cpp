@@ -1,5 +1,6 @@
 #include "serve/http/metrics.hpp"
 
+#include <malloc.h>
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
@@ -95,6 +96,12 @@ double resident_bytes() {
   return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+/// What the program holds of the allocator's memory, without what that keeps for later.
+double heap_used_bytes() {
+  const struct mallinfo2 heap = mallinfo2();
+  return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
+}
+
 void add_scans(const MetricSources& sources, Families& families) {
   const auto& status = sources.status;
   families.counter("planemap_scans_received_total", "Scans that came in; all others of planemap_scans add up to them")
@@ -153,6 +160,9 @@ void add_service(const MetricSources& sources, double started_at_s, Families& fa
   }
   families.gauge("planemap_uptime_seconds", "Since the start of the server").value(steady_now_s() - started_at_s);
   families.gauge("planemap_build_info", "1; the version is its label").value(1.0, {{"version", version()}});
+  families
+      .gauge("planemap_heap_used_bytes", "Memory that the program holds, without what the allocator keeps for later")
+      .value(heap_used_bytes());
   families.gauge("process_resident_memory_bytes", "Memory of the process").value(resident_bytes());
 }
 
