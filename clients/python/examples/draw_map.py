@@ -22,9 +22,20 @@ if options.out:
     matplotlib.use("Agg")
 
 from matplotlib import pyplot as plt  # noqa: E402  (the backend is chosen first)
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # noqa: E402
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # noqa: E402
 
 COLOURS = {"floor": "#8d7b68", "ceiling": "#b0b0b0", "wall": "#4878a8", "table": "#c8803c", "slope": "#7a9a4a"}
+
+
+
+def one_ring(polygon: planemap.Polygon) -> np.ndarray:
+    """Outline and holes as one ring, (n, 2): a cut there and back leads to each hole, which runs the other way round."""
+    ring = polygon.outer
+    for hole in polygon.holes:
+        i, j = divmod(int(np.linalg.norm(ring[:, None] - hole[None], axis=2).argmin()), len(hole))
+        ring = np.vstack([ring[: i + 1], np.roll(hole, -j, axis=0), hole[j], ring[i:]])
+    return ring
+
 
 try:
     robot = planemap.connect(options.server)
@@ -45,10 +56,13 @@ space = figure.add_subplot(1, 2, 1, projection="3d")
 corners = [np.zeros((1, 3))]
 for plane in map_.planes:
     for polygon in plane.polygons:
-        ring = plane.to_world(polygon.outer)
-        corners.append(ring)
         colour = COLOURS.get(plane.plane_class, "#909090")
-        space.add_collection3d(Poly3DCollection([ring], facecolor=colour, edgecolor="black", linewidth=0.3, alpha=0.5))
+        rings = [plane.to_world(ring) for ring in (polygon.outer, *polygon.holes)]
+        corners.append(rings[0])
+        face = plane.to_world(one_ring(polygon))
+        space.add_collection3d(Poly3DCollection([face], facecolor=colour, edgecolor="none", alpha=0.5))
+        closed = [np.vstack([ring, ring[:1]]) for ring in rings]
+        space.add_collection3d(Line3DCollection(closed, color="black", linewidth=0.3))
 low, high = np.vstack(corners).min(axis=0), np.vstack(corners).max(axis=0)
 space.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x, m", ylabel="y, m")
 space.set_box_aspect(np.maximum(high - low, 0.1))
@@ -61,7 +75,7 @@ try:
     plan = robot.floorplan()
     for polygons, colour in ((plan.floor, "#e8e0d0"), (plan.free_floor, "#c8e0c0"), (plan.walls, "#404040")):
         for polygon in polygons:
-            plan_axes.fill(*polygon.outer.T, color=colour)
+            plan_axes.fill(*one_ring(polygon).T, facecolor=colour, linewidth=0.0)
     asked = np.array(options.point) if options.point else (low + high) / 2.0
     point = plan.axes @ (asked - plan.origin_m)
     near = robot.nearest([asked], sigma_m=0.01, count=3)
