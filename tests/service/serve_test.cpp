@@ -531,7 +531,7 @@ TEST_F(RequestAnswererTest, WrongArgumentsGetAnErrorThatSaysWhy) {
   expect_bad(nearest_request(1, 1001), "count: must be 1 to 1000, is 1001");
   request = nearest_request(1, 1);
   request.arguments.filter.classes.resize(17);
-  expect_bad(request, "classes: there may be 16, there are 17");
+  expect_bad(request, "filter.classes: there may be 16, there are 17");
 }
 
 TEST(PageCodec, AnItemThatFitsNoPageIsSaid) {

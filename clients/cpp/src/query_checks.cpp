@@ -35,12 +35,14 @@ bool is_symmetric(const std::array<double, 9>& c) {
 Expected<void> check_filter(const PlaneFilter& filter) {
   for (const std::string& name : filter.classes) {
     if (std::find(kClasses.begin(), kClasses.end(), name) != kClasses.end()) continue;
-    return refused("classes: '" + name.substr(0, 32) + "' is no class (floor, ceiling, wall, table, slope, other)");
+    return refused("filter.classes: '" + name.substr(0, 32) +
+                   "' is no class (floor, ceiling, wall, table, slope, other)");
   }
   if (!(filter.max_normal_deviation_rad > 0.0)) {
-    return refused("max_normal_deviation_rad: must be greater than 0, is " + text_of(filter.max_normal_deviation_rad));
+    return refused("filter.max_normal_deviation_rad: must be greater than 0, is " +
+                   text_of(filter.max_normal_deviation_rad));
   }
-  if (filter.epoch < 0) return refused("epoch: must be at least 0, is " + std::to_string(filter.epoch));
+  if (filter.epoch < 0) return refused("filter.epoch: must be at least 0, is " + std::to_string(filter.epoch));
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import time
 from types import TracebackType
 from typing import Any, Callable, Iterator, TypeVar
@@ -35,6 +36,7 @@ from .watch import Watch
 
 _MOST_NEAREST_PLANES = 5000  # of a call: points times count
 _MOST_RAYS = 2000
+_MOST_UINT64 = 2**64 - 1
 
 Item = TypeVar("Item")
 
@@ -72,21 +74,44 @@ def _filter(given: PlaneFilter | None) -> filter_pb2.PlaneFilter:
         return message
     for name in given.classes:
         if name not in decode.CLASSES:
-            raise ValueError(f"classes: {name!r} is no class ({', '.join(decode.CLASSES)})")
+            raise ValueError(f"filter.classes: {name!r} is no class ({', '.join(decode.CLASSES)})")
         message.classes.append(decode.CLASSES.index(name))
     message.min_area_m2 = given.min_area_m2
     if given.max_normal_deviation_rad is not None:
         message.max_normal_deviation_rad = given.max_normal_deviation_rad
     if given.seen_since_utime is not None:
-        message.seen_since_utime = given.seen_since_utime
-    if given.epoch < 0:
-        raise ValueError(f"epoch: must be at least 0, is {given.epoch}")
-    message.epoch = given.epoch
+        message.seen_since_utime = _whole(given.seen_since_utime, "filter.seen_since_utime", -(2**63), 2**63 - 1)
+    message.epoch = _whole(given.epoch, "filter.epoch", 0, _MOST_UINT64)
     return message
 
 
+def _numbers(values: ArrayLike, name: str) -> Floats:
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: must be an array of numbers: {error}") from error
+
+
+def _broadcast(values: ArrayLike, name: str, shape: tuple[int, ...]) -> Floats:
+    numbers = _numbers(values, name)
+    try:
+        return np.broadcast_to(numbers, shape)
+    except ValueError as error:
+        raise ValueError(f"{name}: must be of shape {shape} or fit it, is of shape {numbers.shape}") from error
+
+
+def _whole(value: int, name: str, low: int, high: int) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError as error:
+        raise ValueError(f"{name}: must be a whole number, is {value!r}") from error
+    if not low <= number <= high:
+        raise ValueError(f"{name}: must be {low} to {high}, is {number}")
+    return number
+
+
 def _rows(values: ArrayLike, name: str) -> Floats:
-    rows = np.asarray(values, dtype=np.float64)
+    rows = _numbers(values, name)
     if rows.ndim != 2 or rows.shape[1] != 3 or rows.shape[0] == 0:
         raise ValueError(f"{name}: must be of shape (n, 3) with n >= 1, is of shape {rows.shape}")
     return rows
@@ -130,8 +155,8 @@ class Client:
 
     def cells(self, filter: PlaneFilter | None = None, plane_ids: ArrayLike = ()) -> Cells:
         """The dense cells; of these planes alone, where any are named (10,000 at most)."""
-        ids = np.atleast_1d(np.asarray(plane_ids, dtype=np.int64))
-        request = map_pb2.GetCellsRequest(filter=_filter(filter), plane_ids=[int(id) for id in ids])
+        ids = [_whole(id, "plane_ids", 1, _MOST_UINT64) for id in np.atleast_1d(np.asarray(plane_ids)).tolist()]
+        request = map_pb2.GetCellsRequest(filter=_filter(filter), plane_ids=ids)
         pages = list(self._pages(self._map.GetCells, request))
         cells = [cell for page in pages for cell in page.cells]
         return decode.cells_of(cells, decode.version_of(pages[0].map), pages[0].frame, pages[0].cell_size_m)
@@ -140,7 +165,7 @@ class Client:
         self,
         points_m: ArrayLike,
         *,
-        sigma_m: ArrayLike = 0.0,
+        sigma_m: ArrayLike | None = None,
         covariance_m2: ArrayLike | None = None,
         count: int = 1,
         max_distance_m: float | None = None,
@@ -148,16 +173,17 @@ class Client:
     ) -> NearestPlanes:
         """The planes whose surfaces are nearest to points (n, 3); up to `count` for each, all of one revision.
 
-        sigma_m: standard deviation of the points in every direction; one for all, or (n,).
+        sigma_m: standard deviation of the points in every direction; one for all, or (n,). None: they are exact.
         covariance_m2: instead of it, (3, 3) for all, or (n, 3, 3).
         """
         points = _rows(points_m, "points_m")
-        if not 1 <= count <= 1000:
-            raise ValueError(f"count: must be 1 to 1000, is {count}")
-        sigmas = np.broadcast_to(np.asarray(sigma_m, dtype=np.float64), (len(points),))
+        count = _whole(count, "count", 1, 1000)
+        if sigma_m is not None and covariance_m2 is not None:
+            raise ValueError("sigma_m, covariance_m2: give one of them, not both")
+        sigmas = _broadcast(0.0 if sigma_m is None else sigma_m, "sigma_m", (len(points),))
         uppers = None
         if covariance_m2 is not None:
-            covariances = np.broadcast_to(np.asarray(covariance_m2, dtype=np.float64), (len(points), 3, 3))
+            covariances = _broadcast(covariance_m2, "covariance_m2", (len(points), 3, 3))
             if not np.allclose(covariances, np.swapaxes(covariances, 1, 2), rtol=1e-9, atol=0.0, equal_nan=True):
                 raise ValueError("covariance_m2: is not symmetric")
             uppers = covariances[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
@@ -196,10 +222,10 @@ class Client:
         """
         origins, ways = _rows(origins_m, "origins_m"), _rows(directions, "directions")
         n = max(len(origins), len(ways))
-        origins, ways = np.broadcast_to(origins, (n, 3)), np.broadcast_to(ways, (n, 3))
+        origins, ways = _broadcast(origins, "origins_m", (n, 3)), _broadcast(ways, "directions", (n, 3))
         ranges = None
         if max_range_m is not None:
-            ranges = np.broadcast_to(np.asarray(max_range_m, dtype=np.float64), (n,))
+            ranges = _broadcast(max_range_m, "max_range_m", (n,))
 
         def ask(begin: int, end: int) -> tuple[map_pb2.MapVersion, list[queries_pb2.RayHits]]:
             request = queries_pb2.CastRaysRequest(skip_planes=not planes, skip_cells=not cells, filter=_filter(filter))
@@ -229,8 +255,7 @@ class Client:
 
     def plane(self, plane_id: int) -> PlaneInfo:
         """Everything about a plane, also where it was merged into another one."""
-        if plane_id <= 0:
-            raise ValueError(f"plane_id: must be greater than 0, is {plane_id}")
+        plane_id = _whole(plane_id, "plane_id", 1, _MOST_UINT64)
         request = queries_pb2.GetPlaneRequest(plane_id=plane_id)
         try:
             response = self._map.GetPlane(request, timeout=self._timeout_s, metadata=self._channel.metadata)

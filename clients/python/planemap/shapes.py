@@ -13,15 +13,23 @@ Triple = Sequence[float]
 
 def vector(values: Triple, name: str) -> planes_pb2.Vector3:
     """The message for three numbers."""
-    if len(values) != 3:
-        raise ValueError(f"{name}: must have 3 numbers (x, y, z), has {len(values)}")
-    return planes_pb2.Vector3(x=float(values[0]), y=float(values[1]), z=float(values[2]))
+    x, y, z = _floats(values, name, "x, y, z")
+    return planes_pb2.Vector3(x=x, y=y, z=z)
+
+
+def _floats(values: Sequence[float], name: str, names: str) -> list[float]:
+    n = names.count(",") + 1
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: must be {n} numbers ({names}): {error}") from error
+    if len(numbers) != n:
+        raise ValueError(f"{name}: must have {n} numbers ({names}), has {len(numbers)}")
+    return numbers
 
 
 def _pose(position_m: Triple, rotation_wxyz: Sequence[float]) -> queries_pb2.Pose:
-    if len(rotation_wxyz) != 4:
-        raise ValueError(f"rotation_wxyz: must have 4 numbers (w, x, y, z), has {len(rotation_wxyz)}")
-    w, x, y, z = (float(value) for value in rotation_wxyz)
+    w, x, y, z = _floats(rotation_wxyz, "rotation_wxyz", "w, x, y, z")
     return queries_pb2.Pose(
         position_m=vector(position_m, "position_m"), rotation_w=w, rotation_x=x, rotation_y=y, rotation_z=z
     )

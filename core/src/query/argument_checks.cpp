@@ -63,14 +63,15 @@ std::optional<Error> check_covariance(const std::string& name, const Eigen::Matr
 
 std::optional<Error> check_filter(const PlaneFilter& filter, const MapSnapshot& snapshot) {
   if (!std::isfinite(filter.min_area_m2) || filter.min_area_m2 < 0.0) {
-    return wrong("min_area_m2", "must be finite and at least 0, is " + text_of(filter.min_area_m2));
+    return wrong("filter.min_area_m2", "must be finite and at least 0, is " + text_of(filter.min_area_m2));
   }
   if (!(filter.max_normal_deviation_rad >= 0.0)) {
-    return wrong("max_normal_deviation_rad", "must be at least 0, is " + text_of(filter.max_normal_deviation_rad));
+    return wrong("filter.max_normal_deviation_rad",
+                 "must be at least 0, is " + text_of(filter.max_normal_deviation_rad));
   }
   if (!filter.epoch || *filter.epoch == snapshot.epoch()) return std::nullopt;
-  return wrong("epoch", "the map is of epoch " + std::to_string(snapshot.epoch()) + ", asked for is " +
-                            std::to_string(*filter.epoch));
+  return wrong("filter.epoch", "the map is of epoch " + std::to_string(snapshot.epoch()) + ", asked for is " +
+                                   std::to_string(*filter.epoch));
 }
 
 }  // namespace planemap

@@ -1,6 +1,7 @@
 #include "codec/proto_question_codec.hpp"
 
 #include <planemap/v1/queries.pb.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -18,7 +19,9 @@ constexpr double kUnitTolerance = 1e-3;
 Expected<Eigen::Matrix3d> covariance_of(const v1::NearestPoint& message) {
   if (message.covariance_m2().empty()) {
     const double sigma_m = message.sigma_m();
-    if (!std::isfinite(sigma_m) || sigma_m < 0.0) return fail("sigma_m: must be finite and >= 0");
+    if (!std::isfinite(sigma_m) || sigma_m < 0.0) {
+      return fail(fmt::format("sigma_m: must be finite and at least 0, is {:g}", sigma_m));
+    }
     return Eigen::Matrix3d(sigma_m * sigma_m * Eigen::Matrix3d::Identity());
   }
   if (message.covariance_m2_size() != 6) {
@@ -36,7 +39,8 @@ Expected<Eigen::Isometry3d> isometry_of(const v1::Pose& message, const std::stri
   const Eigen::Quaterniond rotation(message.rotation_w(), message.rotation_x(), message.rotation_y(),
                                     message.rotation_z());
   if (!rotation.coeffs().allFinite() || std::abs(rotation.norm() - 1.0) > kUnitTolerance) {
-    return fail(name + ".rotation: must be a unit quaternion, its length is " + std::to_string(rotation.norm()));
+    return fail(
+        fmt::format("{}.rotation_w, _x, _y, _z: must be a unit quaternion, its length is {:g}", name, rotation.norm()));
   }
   Eigen::Isometry3d pose(rotation.normalized());
   pose.translation() = vector_of(message.position_m());

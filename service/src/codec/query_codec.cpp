@@ -31,7 +31,7 @@ double limit_of(double wire) {
 Expected<PlaneClass> class_named(const std::string& name) {
   const auto found = std::find_if(kClasses.begin(), kClasses.end(), [&](PlaneClass c) { return name_of(c) == name; });
   if (found != kClasses.end()) return *found;
-  return fail(fmt::format("classes: '{}' is no class (floor, ceiling, wall, table, slope, other)",
+  return fail(fmt::format("filter.classes: '{}' is no class (floor, ceiling, wall, table, slope, other)",
                           std::string_view(name).substr(0, 32)));
 }
 
@@ -89,9 +89,9 @@ Expected<void> check_batch(const char* name, std::size_t size, std::size_t most)
 }  // namespace
 
 Expected<PlaneFilter> to_filter(const planemap_lcm::filter_t& wire) {
-  if (wire.epoch < 0) return fail(fmt::format("epoch: must be at least 0, is {}", wire.epoch));
+  if (wire.epoch < 0) return fail(fmt::format("filter.epoch: must be at least 0, is {}", wire.epoch));
   if (wire.classes.size() > kMostClasses) {
-    return fail(fmt::format("classes: there may be {}, there are {}", kMostClasses, wire.classes.size()));
+    return fail(fmt::format("filter.classes: there may be {}, there are {}", kMostClasses, wire.classes.size()));
   }
   PlaneFilter filter;
   if (wire.epoch > 0) filter.epoch = static_cast<std::uint64_t>(wire.epoch);

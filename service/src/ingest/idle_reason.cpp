@@ -65,12 +65,17 @@ std::string input_reason(const InputFacts& input, double now_host_s) {
 
 std::string idle_reason(std::span<const InputFacts> inputs, const MapperFacts& mapper, double now_host_s) {
   if (mapper.is_paused) return "mapping is paused: scans are dropped until it is resumed";
-  if (mapper.mapped > 0 && is_recent(mapper.last_mapped_host_s, now_host_s)) return {};
+  // What was mapped before a reset is not in the map.
+  const bool is_anew = mapper.reset_host_s && (mapper.mapped == 0 || mapper.last_mapped_host_s <= *mapper.reset_host_s);
+  if (!is_anew && mapper.mapped > 0 && is_recent(mapper.last_mapped_host_s, now_host_s)) return {};
   std::vector<std::string> reasons = mapper_reasons(mapper, now_host_s);
   const bool mapper_says_why = !reasons.empty();
   for (const auto& input : inputs) {
     if (mapper_says_why && reaches_the_mapper(input, now_host_s)) continue;
-    std::string reason = input_reason(input, now_host_s);
+    const bool is_silent = is_anew && input.scans > 0 && input.last_scan_host_s <= *mapper.reset_host_s;
+    std::string reason = is_silent ? fmt::format("no scan on {} since the map was reset {:.0f} s ago", input.channel,
+                                                 now_host_s - *mapper.reset_host_s)
+                                   : input_reason(input, now_host_s);
     if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end()) reasons.push_back(std::move(reason));
   }
   return fmt::format("{}", fmt::join(reasons, "; "));

@@ -40,6 +40,7 @@ struct MapperFacts {
   std::string last_error{};  ///< why the last scan that it failed at could not be mapped; empty: none
   double last_error_host_s = 0.0;
   bool is_paused = false;
+  std::optional<double> reset_host_s{};  ///< when the map was begun anew on demand; empty: never
 };
 
 /// Nothing was mapped for so long: idle. Slow sensors of one scan in two seconds are not.

@@ -135,6 +135,7 @@ void MappingService::begin_asked_maps() {
   {
     const std::lock_guard lock(mutex_);
     done_resets_ = number;
+    stats_.reset_host_s = steady_now_s();
   }
   reset_done_.notify_all();
   if (on_snapshot_) on_snapshot_();

@@ -41,6 +41,7 @@ struct MappingStats {
   std::string last_error;  ///< why the last scan that could not be mapped could not; empty: none
   double last_error_host_s = 0.0;
   bool is_paused = false;
+  std::optional<double> reset_host_s;  ///< when the map was last begun anew on demand
 };
 
 /// A scan that is in the map now.

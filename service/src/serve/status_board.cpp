@@ -34,7 +34,8 @@ std::string StatusBoard::idle_reason_at(double now_host_s) const {
                            stats.last_dropped_host_s,
                            stats.last_error,
                            stats.last_error_host_s,
-                           stats.is_paused};
+                           stats.is_paused,
+                           stats.reset_host_s};
   return idle_reason(intake_.facts(), mapper, now_host_s);
 }
 

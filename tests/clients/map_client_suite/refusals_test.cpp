@@ -21,18 +21,19 @@ TEST_P(MapClientSuite, WrongQuestionsAreRefusedInWords) {
   const std::vector<QueryPoint> one(1);
   NearestOptions nearest;
   nearest.filter.classes = {"wal"};
-  expect_refused(client_->nearest(one, nearest, kLong), "classes: 'wal' is no class (floor, ceiling, wall,");
+  expect_refused(client_->nearest(one, nearest, kLong), "filter.classes: 'wal' is no class (floor, ceiling, wall,");
   nearest = {};
   nearest.filter.epoch = 77;
-  expect_refused(client_->nearest(one, nearest, kLong), "epoch: the map is of epoch 1234, asked for is 77");
+  expect_refused(client_->nearest(one, nearest, kLong), "filter.epoch: the map is of epoch 1234, asked for is 77");
   nearest.filter.epoch = -1;
-  expect_refused(client_->nearest(one, nearest, kLong), "epoch: must be at least 0, is -1");
+  expect_refused(client_->nearest(one, nearest, kLong), "filter.epoch: must be at least 0, is -1");
   nearest = {};
   nearest.filter.min_area_m2 = -1.0;
-  expect_refused(client_->nearest(one, nearest, kLong), "min_area_m2: must be finite and at least 0, is -1");
+  expect_refused(client_->nearest(one, nearest, kLong), "filter.min_area_m2: must be finite and at least 0, is -1");
   nearest = {};
   nearest.filter.max_normal_deviation_rad = 0.0;
-  expect_refused(client_->nearest(one, nearest, kLong), "max_normal_deviation_rad: must be greater than 0, is 0");
+  expect_refused(client_->nearest(one, nearest, kLong),
+                 "filter.max_normal_deviation_rad: must be greater than 0, is 0");
   nearest = {};
   nearest.count = 0;
   expect_refused(client_->nearest(one, nearest, kLong), "count: must be 1 to 1000, is 0");

@@ -58,8 +58,10 @@ class Daemon:
             )
             deadline = time.monotonic() + PATIENCE_S
             while time.monotonic() < deadline:
-                counters = client.status().counters
-                if counters["scans.received"] >= before + frames and counters["scans.waiting"] == 0:
+                status = client.status()
+                counters = status.counters
+                is_over = counters["scans.received"] >= before + frames and counters["scans.waiting"] == 0
+                if is_over and client.snapshot().version == status.version:  # answers may be of a map just before
                     return
                 watch.next(0.05)
             raise RuntimeError(f"not all scans came: {counters}")

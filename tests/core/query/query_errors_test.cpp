@@ -62,10 +62,11 @@ std::string filtered_by(void (*spoil)(PlaneFilter&)) {
 
 TEST(QueryErrors, OfFilters) {
   EXPECT_EQ(filtered_by([](auto& f) { f.epoch = 0; }), "no error");
-  EXPECT_EQ(filtered_by([](auto& f) { f.epoch = 3; }), "epoch: the map is of epoch 0, asked for is 3");
-  EXPECT_EQ(filtered_by([](auto& f) { f.min_area_m2 = -1.0; }), "min_area_m2: must be finite and at least 0, is -1");
+  EXPECT_EQ(filtered_by([](auto& f) { f.epoch = 3; }), "filter.epoch: the map is of epoch 0, asked for is 3");
+  EXPECT_EQ(filtered_by([](auto& f) { f.min_area_m2 = -1.0; }),
+            "filter.min_area_m2: must be finite and at least 0, is -1");
   EXPECT_EQ(filtered_by([](auto& f) { f.max_normal_deviation_rad = kNan; }),
-            "max_normal_deviation_rad: must be at least 0, is nan");
+            "filter.max_normal_deviation_rad: must be at least 0, is nan");
 }
 
 std::string cast_with(void (*spoil)(Ray&)) {

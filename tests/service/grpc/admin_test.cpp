@@ -57,7 +57,12 @@ TEST(Admin, ResetBeginsAnEmptyMapOfAGreaterEpoch) {
   EXPECT_GT(response.epoch(), 1234u);
   EXPECT_EQ(daemon.service().snapshot()->epoch(), response.epoch());
   EXPECT_TRUE(daemon.service().snapshot()->planes().empty());
+  v1::GetStatusResponse told;
+  ASSERT_TRUE(daemon.stub()->GetStatus(new_context().get(), {}, &told).ok());
+  EXPECT_NE(told.idle_reason().find(" since the map was reset 0 s ago"), std::string::npos) << told.idle_reason();
   daemon.map_walls(4);
+  ASSERT_TRUE(daemon.stub()->GetStatus(new_context().get(), {}, &told).ok());
+  EXPECT_EQ(told.idle_reason(), "");
   EXPECT_EQ(daemon.service().snapshot()->epoch(), response.epoch());
   EXPECT_FALSE(daemon.service().snapshot()->planes().empty());
   v1::ResetResponse again;

@@ -198,16 +198,16 @@ TEST_F(Calls, BadArgumentsAreNamed) {
   expect_error(nearest_status(request), bad, "points[0].sigma_m: give it or covariance_m2, not both");
   request = nearest_request();
   request.mutable_points(0)->set_sigma_m(-1.0);
-  expect_error(nearest_status(request), bad, "points[0].sigma_m: must be finite and >= 0");
+  expect_error(nearest_status(request), bad, "points[0].sigma_m: must be finite and at least 0, is -1");
   request = nearest_request();
   request.set_count(5001);
   expect_error(nearest_status(request), bad, "points: 1 points with 5001 planes each are more than 5000 planes in all");
   request = nearest_request();
   request.set_max_distance_m(-1.0);
-  expect_error(nearest_status(request), bad, "points[0].max_distance_m: must be at least 0, is -1");
+  expect_error(nearest_status(request), bad, "max_distance_m: must be at least 0, is -1");
   request = nearest_request();
   request.mutable_filter()->set_min_area_m2(-2.0);
-  expect_error(nearest_status(request), bad, "min_area_m2: must be finite and at least 0, is -2");
+  expect_error(nearest_status(request), bad, "filter.min_area_m2: must be finite and at least 0, is -2");
   request.mutable_filter()->add_classes(static_cast<v1::PlaneClass>(77));
   expect_error(nearest_status(request), bad, "filter.classes: 77 is no class");
 }
@@ -243,7 +243,11 @@ TEST_F(Calls, BadRegionsAreNamed) {
   request.mutable_oriented_box();
   expect_error(status_of(request), bad, "oriented_box.pose: is missing");
   request.mutable_frustum()->mutable_pose()->set_rotation_w(0.5);
-  expect_error(status_of(request), bad, "frustum.pose.rotation: must be a unit quaternion, its length is 0.5");
+  expect_error(status_of(request), bad,
+               "frustum.pose.rotation_w, _x, _y, _z: must be a unit quaternion, its length is 0.5");
+  request.mutable_frustum()->mutable_pose()->set_rotation_w(1.0);
+  request.mutable_frustum()->mutable_pose()->mutable_position_m()->set_x(1e12);
+  expect_error(status_of(request), bad, "frustum.pose.position_m: coordinates may be at most ");
   request.mutable_cylinder()->set_radius_m(1.0);
   expect_error(status_of(request), bad, "cylinder.to_m: must not be the same point as from_m");
 }
@@ -260,12 +264,13 @@ TEST_F(Calls, PlanesThatAreNotThereAreSaidSo) {
 
 TEST_F(Calls, AnotherEpochIsRefusedEverywhere) {
   const auto code = StatusCode::FAILED_PRECONDITION;
-  const std::string words = "epoch: the map is of epoch 1234, asked for is 9; its ids mean other planes";
+  const std::string own = "epoch: the map is of epoch 1234, asked for is 9; its ids mean other planes";
+  const std::string words = "filter." + own;
   v1::GetPlaneRequest plane;
   plane.set_plane_id(1);
   plane.set_epoch(9);
   v1::GetPlaneResponse plane_response;
-  expect_error(stub_->GetPlane(new_context().get(), plane, &plane_response), code, words);
+  expect_error(stub_->GetPlane(new_context().get(), plane, &plane_response), code, own);
   auto nearest = nearest_request();
   nearest.mutable_filter()->set_epoch(9);
   v1::NearestPlanesResponse nearest_response;

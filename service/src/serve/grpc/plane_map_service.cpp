@@ -9,6 +9,7 @@
 
 #include "codec/proto_answer_codec.hpp"
 #include "codec/proto_question_codec.hpp"
+#include "serve/argument_names.hpp"
 #include "serve/grpc/map_pages.hpp"
 #include "serve/grpc/pages.hpp"
 
@@ -35,23 +36,25 @@ PlaneMapService::PlaneMapService(CallDesk& desk, IndexKeeper& keeper, WatchHub& 
     : desk_(desk), keeper_(keeper), hub_(hub), frame_(std::move(frame)), status_(std::move(status)) {}
 
 /// The index to answer with, or why there is none: the map is of another epoch than the one that is meant (0: any).
-std::shared_ptr<const MapIndex> PlaneMapService::index_for(std::uint64_t epoch, grpc::Status& status) {
+std::shared_ptr<const MapIndex> PlaneMapService::index_for(std::uint64_t epoch, grpc::Status& status,
+                                                           const char* epoch_name) {
   auto index = keeper_.current();
   if (!index) {
     status = {grpc::StatusCode::UNAVAILABLE, "the map is not ready to be asked"};
   } else if (epoch != 0 && epoch != index->snapshot().epoch()) {
     status = {grpc::StatusCode::FAILED_PRECONDITION,
-              fmt::format("epoch: the map is of epoch {}, asked for is {}; its ids mean other planes",
+              fmt::format("{}: the map is of epoch {}, asked for is {}; its ids mean other planes", epoch_name,
                           index->snapshot().epoch(), epoch)};
     index = nullptr;
   }
   return index;
 }
 
-grpc::ServerUnaryReactor* PlaneMapService::ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask) {
-  return answer(desk_, context, Scope::kRead, [this, epoch, ask = std::move(ask)] {
+grpc::ServerUnaryReactor* PlaneMapService::ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask,
+                                                   const char* epoch_name) {
+  return answer(desk_, context, Scope::kRead, [this, epoch, epoch_name, ask = std::move(ask)] {
     grpc::Status status;
-    const auto index = index_for(epoch, status);
+    const auto index = index_for(epoch, status, epoch_name);
     return index ? ask(*index) : status;
   });
 }
@@ -67,19 +70,22 @@ grpc::ServerUnaryReactor* PlaneMapService::GetStatus(grpc::CallbackServerContext
 grpc::ServerUnaryReactor* PlaneMapService::GetPlane(grpc::CallbackServerContext* context,
                                                     const v1::GetPlaneRequest* request,
                                                     v1::GetPlaneResponse* response) {
-  return ask_map(context, request->epoch(), [request, response](const MapIndex& index) -> grpc::Status {
-    const auto lookup = index.queries().plane(request->plane_id());
-    if (!lookup) return {grpc::StatusCode::INVALID_ARGUMENT, "plane_" + lookup.error().message};
-    if (lookup->fate == PlaneFate::kUnknown) {
-      return {grpc::StatusCode::NOT_FOUND,
-              fmt::format("plane {} was never seen in the map of epoch {}, or went too long ago", request->plane_id(),
-                          index.snapshot().epoch())};
-    }
-    *response = to_proto(*lookup);
-    *response->mutable_map() = version_of(index.snapshot());
-    if (response->has_plane()) cut_to_fit(*response->mutable_plane(), kMaxItemBytes / 2);
-    return grpc::Status::OK;
-  });
+  return ask_map(
+      context, request->epoch(),
+      [request, response](const MapIndex& index) -> grpc::Status {
+        const auto lookup = index.queries().plane(request->plane_id());
+        if (!lookup) return {grpc::StatusCode::INVALID_ARGUMENT, "plane_" + lookup.error().message};
+        if (lookup->fate == PlaneFate::kUnknown) {
+          return {grpc::StatusCode::NOT_FOUND,
+                  fmt::format("plane {} was never seen in the map of epoch {}, or went too long ago",
+                              request->plane_id(), index.snapshot().epoch())};
+        }
+        *response = to_proto(*lookup);
+        *response->mutable_map() = version_of(index.snapshot());
+        if (response->has_plane()) cut_to_fit(*response->mutable_plane(), kMaxItemBytes / 2);
+        return grpc::Status::OK;
+      },
+      "epoch");
 }
 
 grpc::ServerUnaryReactor* PlaneMapService::GetFloorPlan(grpc::CallbackServerContext* context,
@@ -117,7 +123,7 @@ grpc::ServerUnaryReactor* PlaneMapService::NearestPlanes(grpc::CallbackServerCon
                    for (std::size_t i = 0; i < queries->size(); ++i) {
                      if (has_gone(*context, i)) return grpc::Status::CANCELLED;
                      const auto near = index.queries().nearest((*queries)[i]);
-                     if (!near) return invalid(Error{fmt::format("points[{}].{}", i, near.error().message)});
+                     if (!near) return invalid(of_point(i, near.error()));
                      v1::NearPlanes& result = *response->add_results();
                      for (const NearPlane& plane : *near) *result.add_planes() = to_proto(plane);
                    }
@@ -201,7 +207,7 @@ grpc::ServerWriteReactor<v1::RegionPage>* PlaneMapService::QueryRegion(grpc::Cal
     const auto query = to_query(*request);
     auto contents = query ? index->queries().region(*query) : tl::make_unexpected(query.error());
     if (!contents) {
-      status = invalid(contents.error());
+      status = invalid(of_region(contents.error(), "pose.position_m"));
       return {};
     }
     return region_pages(index, std::move(*contents));

@@ -41,8 +41,10 @@ class PlaneMapService final : public v1::PlaneMap::CallbackService {
 
  private:
   using Ask = std::function<grpc::Status(const MapIndex&)>;
-  grpc::ServerUnaryReactor* ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask);
-  std::shared_ptr<const MapIndex> index_for(std::uint64_t epoch, grpc::Status& status);
+  grpc::ServerUnaryReactor* ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask,
+                                    const char* epoch_name = "filter.epoch");
+  std::shared_ptr<const MapIndex> index_for(std::uint64_t epoch, grpc::Status& status,
+                                            const char* epoch_name = "filter.epoch");
 
   CallDesk& desk_;
   IndexKeeper& keeper_;

@@ -11,6 +11,7 @@
 #include "codec/answer_codec.hpp"
 #include "codec/plane_codec.hpp"
 #include "codec/query_codec.hpp"
+#include "serve/argument_names.hpp"
 
 namespace planemap::service {
 namespace {
@@ -61,7 +62,7 @@ std::optional<Refusal> add_nearest(const SnapshotQueries& queries, const planema
   if (!points) return refuse(points.error());
   for (std::size_t i = 0; i < points->size(); ++i) {
     const auto near = queries.nearest((*points)[i]);
-    if (!near) return Refusal{reply_t::STATUS_BAD_REQUEST, fmt::format("points[{}].{}", i, near.error().message)};
+    if (!near) return refuse(of_point(i, near.error()));
     add_to(answer, *near, i);
   }
   return std::nullopt;
@@ -145,7 +146,9 @@ std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request
       return add_rays(queries, arguments.rays.front(), *filter, answer);
     case request_t::OPERATION_REGION: {
       const auto query = to_query(arguments.region.front(), *filter);
-      return query ? add(answer, queries.region(*query)) : refuse(query.error());
+      if (!query) return refuse(query.error());
+      const auto contents = queries.region(*query);
+      return contents ? add(answer, contents) : refuse(of_region(contents.error(), "from_m"));
     }
     case request_t::OPERATION_PLANE:
       return add_plane(queries, arguments.plane.front().id, answer);
