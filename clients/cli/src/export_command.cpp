@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -29,6 +30,10 @@ ExitCode write(const ExportMap& map, const ExportOptions& options) {
 }
 
 ExitCode run(const ExportOptions& options) {
+  for (auto output = options.outputs.begin(); output != options.outputs.end(); ++output) {
+    if (std::find(options.outputs.begin(), output, *output) == output) continue;
+    return complain(ExitCode::kWrongUse, *output + ": is named more than once");
+  }
   for (const std::string& output : options.outputs) {
     if (auto usable = check_export_path(output); !usable) return complain(ExitCode::kWrongUse, usable.error().message);
   }

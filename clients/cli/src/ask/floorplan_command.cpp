@@ -5,6 +5,7 @@
 
 #include "ask/answer_json.hpp"
 #include "ask/query_options.hpp"
+#include "checked_numbers.hpp"
 #include "command.hpp"
 
 namespace planemap::cli {
@@ -75,7 +76,7 @@ void add_floorplan_command(CLI::App& app, Action& action) {
       app.add_subcommand("floorplan", "Ask for walls and free floor, seen from above (polygons: --json)");
   const auto options = std::make_shared<FloorplanCommand>();
   const auto add_height = [&](const char* name, double& height_m, const char* help) {
-    command->add_option(name, height_m, help)->type_name("M")->check(CLI::NonNegativeNumber)->capture_default_str();
+    command->add_option(name, height_m, help)->type_name("M")->check(not_negative_number())->capture_default_str();
   };
   add_height("--cut-low", options->heights.cut_low_m, "Walls are cut from this height above the floor");
   add_height("--cut-high", options->heights.cut_high_m, "to this one");

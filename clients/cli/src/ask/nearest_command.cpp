@@ -6,6 +6,7 @@
 
 #include "ask/answer_json.hpp"
 #include "ask/query_options.hpp"
+#include "checked_numbers.hpp"
 #include "command.hpp"
 
 namespace planemap::cli {
@@ -72,14 +73,14 @@ void add_nearest_command(CLI::App& app, Action& action) {
   add_numbers(*command, "--point", options->point_m, 3, "The point, world frame, metres", "X Y Z", true);
   command->add_option("--sigma", options->sigma_m, "Standard deviation of the point, metres")
       ->type_name("M")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative_number());
   command->add_option("--count", options->count, "Planes, at most")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str();
   command->add_option("--max-distance", options->max_distance_m, "Farther surfaces are left out, metres")
       ->type_name("M")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   add_query_options(*command, options->query);
   add_filter_options(*command, options->query);
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -6,6 +6,7 @@
 
 #include "ask/answer_json.hpp"
 #include "ask/query_options.hpp"
+#include "checked_numbers.hpp"
 #include "command.hpp"
 
 namespace planemap::cli {
@@ -93,11 +94,24 @@ std::string plain_text(const client::PlaneAnswer& answer) {
   return text;
 }
 
+/// In words one that is not known is an error alone; in JSON it is an answer, too.
+std::string text_of(const client::PlaneAnswer& answer, bool json) {
+  if (json) return json_text(answer);
+  return answer.fate == client::PlaneFate::kUnknown ? std::string() : plain_text(answer);
+}
+
 ExitCode run(const PlaneCommand& command) {
-  return ask_and_print(
+  std::string unknown;
+  const ExitCode code = ask_and_print(
       command.query,
       [&](client::MapClient& map, std::chrono::milliseconds timeout) { return map.plane(command.id, timeout); },
-      command.query.json ? json_text : plain_text);
+      [&](const client::PlaneAnswer& answer) {
+        if (answer.fate == client::PlaneFate::kUnknown) unknown = fate_line(answer);
+        return text_of(answer, command.query.json);
+      });
+  if (unknown.empty()) return code;
+  unknown.pop_back();  // the line's end
+  return complain(ExitCode::kFailed, unknown);
 }
 
 }  // namespace
@@ -107,7 +121,7 @@ void add_plane_command(CLI::App& app, Action& action) {
   const auto options = std::make_shared<PlaneCommand>();
   command->add_option("ID", options->id, "Id of the plane, also of one that was merged into another")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1));
   add_query_options(*command, options->query);
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -1,8 +1,12 @@
 #include "ask/query_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <numbers>
+
+#include "checked_numbers.hpp"
 
 namespace planemap::cli {
 
@@ -30,26 +34,32 @@ void add_filter_options(CLI::App& command, QueryOptions& options) {
       ->group(group);
   command.add_option("--min-area", options.filter.min_area_m2, "have at least this area, square metres")
       ->type_name("M2")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative_number())
       ->group(group);
   command
       .add_option("--max-normal-deviation", options.max_normal_deviation_deg,
                   "have a normal that is known to this standard deviation or better, degrees")
       ->type_name("DEG")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(group);
   command.add_option("--seen-since", options.filter.seen_since_utime, "were last seen then or later, microseconds")
       ->type_name("UTIME")
+      ->check(whole_number(std::numeric_limits<std::int64_t>::min()))
       ->group(group);
   command.add_option("--epoch", options.filter.epoch, "are of this life of the map: of another one there is no answer")
       ->type_name("EPOCH")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1))
       ->group(group);
 }
 
 void add_numbers(CLI::App& command, const std::string& name, std::vector<double>& numbers, int count,
                  const std::string& help, const std::string& type, bool required) {
-  command.add_option(name, numbers, help)->type_name(type)->type_size(count)->expected(1)->required(required);
+  command.add_option(name, numbers, help)
+      ->type_name(type)
+      ->type_size(count)
+      ->expected(1)
+      ->required(required)
+      ->check(coordinate(/*finite=*/name != "--box"));
 }
 
 client::Vector3 vector_at(const std::vector<double>& numbers, std::size_t at) {

@@ -30,7 +30,7 @@ struct QueryOptions {
 void add_query_options(CLI::App& command, QueryOptions& options);
 /// Adds --class, --min-area, --max-normal-deviation, --seen-since and --epoch.
 void add_filter_options(CLI::App& command, QueryOptions& options);
-/// An option of so many numbers, in which negative ones need no ado.
+/// An option of so many numbers, finite ones but for --box, in which negative ones need no ado.
 void add_numbers(CLI::App& command, const std::string& name, std::vector<double>& numbers, int count,
                  const std::string& help, const std::string& type, bool required);
 

@@ -1,12 +1,14 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <numbers>
 #include <vector>
 
 #include "ask/answer_json.hpp"
 #include "ask/query_options.hpp"
+#include "checked_numbers.hpp"
 #include "command.hpp"
 
 namespace planemap::cli {
@@ -67,6 +69,9 @@ std::string plain_text(const client::CastAnswer& answer) {
 }
 
 ExitCode run(const RayCommand& command) {
+  if (std::all_of(command.direction.begin(), command.direction.end(), [](double part) { return part == 0.0; })) {
+    return complain(ExitCode::kWrongUse, "--direction: must not be zero");
+  }
   client::Ray ray;
   ray.origin_m = vector_at(command.from_m, 0);
   ray.direction = vector_at(command.direction, 0);
@@ -90,7 +95,7 @@ void add_ray_command(CLI::App& app, Action& action) {
   add_numbers(*command, "--direction", options->direction, 3, "Where it goes, of any length but 0", "X Y Z", true);
   command->add_option("--max-range", options->max_range_m, "How far it goes, metres")
       ->type_name("M")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   add_query_options(*command, options->query);
   add_filter_options(*command, options->query);
   command->callback([options, &action] { action = [options] { return run(*options); }; });

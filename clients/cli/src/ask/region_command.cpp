@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -37,6 +39,48 @@ client::Region region_of(const RegionCommand& command) {
     return client::Frustum{pose_at_start(f), f[7] * kRadians, f[8] * kRadians, f[9], f[10]};
   }
   return client::Cylinder{vector_at(command.cylinder, 0), vector_at(command.cylinder, 3), command.cylinder[6]};
+}
+
+constexpr double kUnitTolerance = 1e-3;  // of a quaternion's length, as the service has it
+
+/// What is wrong with the numbers of the shape; empty: nothing.
+std::string problem_of(const RegionCommand& command) {
+  const auto positive = [](const char* what, double number) {
+    return number > 0.0 ? std::string() : fmt::format("{} must be greater than 0, is {:g}", what, number);
+  };
+  const auto unit = [](const std::vector<double>& numbers) {
+    const double length = std::hypot(std::hypot(numbers[3], numbers[4]), std::hypot(numbers[5], numbers[6]));
+    if (std::abs(length - 1.0) <= kUnitTolerance) return std::string();
+    return fmt::format("QW QX QY QZ must be a unit quaternion, its length is {:g}", length);
+  };
+  const auto first_of = [](const char* option, std::initializer_list<std::string> problems) {
+    for (const std::string& problem : problems) {
+      if (!problem.empty()) return fmt::format("{}: {}", option, problem);
+    }
+    return std::string();
+  };
+  for (std::size_t axis = 0; axis < 3 && !command.box.empty(); ++axis) {
+    if (command.box[axis] < command.box[axis + 3]) continue;
+    return fmt::format("--box: the first {} must be less than the second, {:g}; is {:g}", "XYZ"[axis],
+                       command.box[axis + 3], command.box[axis]);
+  }
+  if (!command.oriented_box.empty()) {
+    const auto& b = command.oriented_box;
+    return first_of("--oriented-box", {unit(b), positive("SX", b[7]), positive("SY", b[8]), positive("SZ", b[9])});
+  }
+  if (!command.sphere.empty()) return first_of("--sphere", {positive("R", command.sphere[3])});
+  if (!command.cylinder.empty()) return first_of("--cylinder", {positive("R", command.cylinder[6])});
+  if (command.frustum.empty()) return {};
+  const auto& f = command.frustum;
+  const auto angle = [](const char* what, double degrees) {
+    if (degrees > 0.0 && degrees < 180.0) return std::string();
+    return fmt::format("{} must be greater than 0 and less than 180, is {:g}", what, degrees);
+  };
+  const bool is_ordered = f[9] >= 0.0 && f[9] < f[10];
+  return first_of("--frustum",
+                  {unit(f), angle("HORIZONTAL", f[7]), angle("VERTICAL", f[8]),
+                   is_ordered ? std::string()
+                              : fmt::format("NEAR must be at least 0 and less than FAR, {:g}; is {:g}", f[10], f[9])});
 }
 
 std::string json_text(const client::RegionAnswer& answer, const RegionCommand& command) {
@@ -75,6 +119,9 @@ std::string table(const client::RegionAnswer& answer, const RegionCommand& comma
 }
 
 ExitCode run(const RegionCommand& command) {
+  if (const std::string problem = problem_of(command); !problem.empty()) {
+    return complain(ExitCode::kWrongUse, problem);
+  }
   const client::RegionQuery query{region_of(command), command.polygons, command.cells, command.query.plane_filter()};
   return ask_and_print(
       command.query,

@@ -5,11 +5,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "ask/answer_json.hpp"
 #include "ask/query_options.hpp"
+#include "checked_numbers.hpp"
 #include "command.hpp"
 
 namespace planemap::cli {
@@ -104,10 +106,10 @@ void add_watch_command(CLI::App& app, Action& action) {
   const auto options = std::make_shared<WatchCommand>();
   command->add_option("--for", options->seconds, "End after so many seconds")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--changes", options->changes, "End after so many changes; the first one is the whole map")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, std::numeric_limits<int>::max()));
   add_query_options(*command, options->query);
   command->get_option("--json")->description("Print a JSON object a line");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
