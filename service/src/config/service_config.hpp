@@ -145,7 +145,7 @@ struct GrpcConfig {
   int max_streams_per_connection = 64;  ///< calls at a time on one connection; more wait in the client
   int max_streams = 128;                ///< watchers and answers in pages, of all clients; more are refused
   int max_request_bytes = 1048576;
-  double index_age_s = 0.1;     ///< a query is answered by a map that may be older by so much
+  double index_age_s = 0.25;    ///< a query is answered by a map that may be older by so much
   double watch_period_s = 0.1;  ///< least time between two deltas
   double heartbeat_s = 5.0;     ///< of watchers that ask for no other
 };

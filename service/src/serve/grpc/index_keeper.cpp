@@ -38,14 +38,17 @@ std::shared_ptr<const MapIndex> IndexKeeper::current() {
   const auto newest = mapping_.snapshot();
   std::unique_lock lock(mutex_);
   if (index_ && &index_->snapshot() == newest.get()) return index_;
-  const double age_s = steady_now_s() - taken_at_s_;
+  const double now_s = steady_now_s();
+  const double age_s = now_s - taken_at_s_;
   const bool is_usable = index_ && index_->snapshot().epoch() == newest->epoch() && age_s < index_age_s_;
-  if (!is_usable || age_s > 0.5 * index_age_s_) {
+  // One that is being made is waited for where it will do, or else each caller would wait for two.
+  const bool is_coming = begun_ > done_ && now_s - begun_at_s_ < index_age_s_ && coming_epoch_ == newest->epoch();
+  if (!is_coming && (!is_usable || age_s > 0.5 * index_age_s_)) {
     wanted_ = begun_ + 1;
     woken_.notify_all();
   }
   if (is_usable) return index_;
-  const std::uint64_t number = begun_ + 1;
+  const std::uint64_t number = is_coming ? begun_ : begun_ + 1;
   built_.wait(lock, [&] { return done_ >= number || is_stopped_; });
   return index_;
 }
@@ -102,11 +105,13 @@ void IndexKeeper::build(std::unique_lock<std::mutex>& lock) {
   const std::uint64_t number = ++begun_;
   has_news_ = false;
   const double taken_at_s = steady_now_s();
+  const auto snapshot = mapping_.snapshot();
+  begun_at_s_ = taken_at_s;
+  coming_epoch_ = snapshot->epoch();
   const auto previous = index_;
   lock.unlock();
   std::shared_ptr<const MapIndex> index;
   try {
-    const auto snapshot = mapping_.snapshot();
     const bool is_same = previous && &previous->snapshot() == snapshot.get();
     index = is_same ? previous : std::make_shared<const MapIndex>(snapshot, gravity_, previous.get());
   } catch (const std::exception& e) {

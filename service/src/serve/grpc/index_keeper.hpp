@@ -56,7 +56,9 @@ class IndexKeeper {
   double taken_at_s_ = 0.0;                ///< when its snapshot was the newest
   std::uint64_t begun_ = 0;                ///< indexes whose making has begun
   std::uint64_t done_ = 0;
-  std::uint64_t wanted_ = 0;  ///< the index of this number is waited for
+  double begun_at_s_ = 0.0;         ///< of the last that was begun: when its snapshot was the newest
+  std::uint64_t coming_epoch_ = 0;  ///< its map
+  std::uint64_t wanted_ = 0;        ///< the index of this number is waited for
   int watchers_ = 0;
   bool has_news_ = true;  ///< since the index's snapshot was taken
   bool is_stopped_ = false;
