@@ -159,7 +159,7 @@ TEST(Nearest, AgreesWithBoostGeometryOnRandomMaps) {
   testing::Random random(11);
   int cases = 0;
   int named = 0;
-  for (int round = 0; round < 500; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     const auto map = testing::random_map(random, round % 50, 0);
     const SnapshotQueries queries = map.queries();
     std::vector<testing::BoostSurface> surfaces;
@@ -191,8 +191,8 @@ TEST(Nearest, AgreesWithBoostGeometryOnRandomMaps) {
       }
     }
   }
-  EXPECT_EQ(cases, 50'000);
-  EXPECT_GT(named, 80'000);
+  EXPECT_EQ(cases, 100'000);
+  EXPECT_GT(named, 160'000);
 }
 
 /// Draws errors of (nx, ny, nz, d) or of points by their covariance.

@@ -222,7 +222,7 @@ TEST(Cast, AgreesWithEachPlaneAndCellAskedAloneOnRandomMaps) {
   int cases = 0;
   int plane_hits = 0;
   int cell_hits = 0;
-  for (int round = 0; round < 500; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     const auto map = testing::random_map(random, round % 50, round % 7 * 100);
     const SnapshotQueries queries = map.queries();
     std::vector<testing::BoostSurface> surfaces;
@@ -267,9 +267,9 @@ TEST(Cast, AgreesWithEachPlaneAndCellAskedAloneOnRandomMaps) {
       cell_hits += hit.cell ? 1 : 0;
     }
   }
-  EXPECT_EQ(cases, 50'000);
-  EXPECT_GT(plane_hits, 12'000);
-  EXPECT_GT(cell_hits, 4'000);
+  EXPECT_EQ(cases, 100'000);
+  EXPECT_GT(plane_hits, 24'000);
+  EXPECT_GT(cell_hits, 8'000);
 }
 
 TEST(Cast, TheStandardDeviationIsThatOfDrawnPlanes) {

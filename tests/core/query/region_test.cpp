@@ -189,7 +189,7 @@ TEST(Region, AgreesWithPointsOfTheSurfacesOnRandomMaps) {
   int named = 0;
   int clipped = 0;
   int cells = 0;
-  for (int round = 0; round < 250; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     const auto map = testing::random_map(random, 40, 200);
     RegionQuery query{random_region(random, map, round % 5), true, true, {}};
     if (random.one_in(4)) query.filter = testing::random_filter(random);
@@ -228,9 +228,9 @@ TEST(Region, AgreesWithPointsOfTheSurfacesOnRandomMaps) {
     ASSERT_EQ(cell, found->cells.size());
     cells += static_cast<int>(cell);
   }
-  EXPECT_GT(named, 500);
-  EXPECT_GT(clipped, 300);
-  EXPECT_GT(cells, 1000);
+  EXPECT_GT(named, 2000);
+  EXPECT_GT(clipped, 1200);
+  EXPECT_GT(cells, 4000);
 }
 
 }  // namespace
