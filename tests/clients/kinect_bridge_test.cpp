@@ -87,6 +87,7 @@ TEST_F(KinectBridge, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"--dataset x --log y --rate 5", "recorded"},
       {"--simulate apartment --log y --loop", "--frames"},
       {"--simulate apartment --channel ''", "channel"},
+      {"--simulate apartment --channel POSE", "must be another one than the scans'"},
       {"--simulate apartment --encoding jpeg", "zlib"},
       {"--simulate apartment --encoding png", "depth_scan knows no png"},
       {"--simulate apartment --format image --encoding zlib", "image knows no zlib"},

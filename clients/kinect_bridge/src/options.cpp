@@ -205,6 +205,9 @@ WireFormat wire_format(const Options& options, const Raw& raw) {
 void complete(Options& options, const Raw& raw) {
   check_channel("--channel", options.feed.channel);
   check_channel("--pose-channel", options.feed.pose_channel);
+  if (options.feed.channel == options.feed.pose_channel) {
+    throw CLI::ValidationError("--pose-channel", "must be another one than the scans' (--channel)");
+  }
   if (!raw.camera.empty()) {
     const auto camera = sources::parse_camera_parameters(raw.camera);
     if (!camera) throw CLI::ValidationError("--intrinsics", camera.error().message);

@@ -97,6 +97,27 @@ TEST(Admin, ResetDropsWhatWaitsForABusyMapper) {
   EXPECT_EQ(unaccounted(daemon.service().counters()), 0);
 }
 
+TEST(Admin, ResetSaysThatTheMapperIsBusy) {
+  TestDaemon daemon;
+  std::promise<void> release;
+  const auto released = release.get_future().share();
+  std::promise<void> busy;
+  std::once_flag once;
+  daemon.service().set_snapshot_listener([&] {
+    std::call_once(once, [&] { busy.set_value(); });
+    released.wait();
+  });
+  daemon.send_walls(1);
+  const auto is_busy = busy.get_future();
+  ASSERT_TRUE(
+      daemon.handle_until([&] { return is_busy.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }));
+  v1::ResetResponse response;
+  const auto status = daemon.admin()->Reset(new_context().get(), {}, &response);  // which gives up after 5 s
+  release.set_value();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(status.error_message(), "the mapper is busy with a scan; the new map begins once that is mapped");
+}
+
 TEST(Admin, CallsBeyondThoseThatMayWaitAreRefused) {
   auto config = test_config();
   config.grpc.threads = 1;
