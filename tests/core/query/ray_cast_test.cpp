@@ -10,6 +10,8 @@
 #include <planemap/block.hpp>
 #include <planemap/query/limits.hpp>
 #include <planemap/query/snapshot_queries.hpp>
+#include <utility>
+#include <vector>
 
 #include "query/boost_surface.hpp"
 #include "query/random_map.hpp"
@@ -303,6 +305,69 @@ TEST(Cast, TheStandardDeviationIsThatOfDrawnPlanes) {
     }
     const double spread_m = std::sqrt(sum2 / kDraws - (sum / kDraws) * (sum / kDraws));
     EXPECT_NEAR(hits.plane->sigma_m / spread_m, 1.0, 0.03) << round;
+  }
+}
+
+/// A dense cell about a place, of points with random errors of their own.
+struct RandomCell {
+  MapSnapshot::Parts parts;
+  std::vector<Vector3d> points_m;
+  std::vector<Vector3d> sigmas_m;
+};
+
+RandomCell random_cell(testing::Random& random) {
+  constexpr int kPoints = 12;
+  constexpr double kEdgeM = 0.1;
+  RandomCell made;
+  made.parts.cell_size_m = kEdgeM;
+  made.parts.density_threshold = 10;
+  const CellIndex index = (random.in_cube(5.0) / kEdgeM).array().floor().matrix().cast<int>();
+  const Vector3d middle_m = kEdgeM * (index.cast<double>() + Vector3d::Constant(0.5));
+  auto block = std::make_shared<Block>(block_of(index));
+  Cell& cell = block->cell(static_cast<std::size_t>(block->find_or_add(place_of(index))));
+  const Vector3d largest_m(random.uniform(0.001, 0.05), random.uniform(0.001, 0.05), random.uniform(0.001, 0.05));
+  for (int i = 0; i < kPoints; ++i) {
+    made.points_m.push_back(middle_m + random.in_cube(0.5 * kEdgeM));
+    made.sigmas_m.push_back(random.uniform(0.2, 1.0) * largest_m);
+    cell.sums.count += 1.0;
+    cell.sums.first_m += made.points_m.back() - middle_m;
+    cell.sums.error_m2 += made.sigmas_m.back().cwiseAbs2().cast<float>();
+  }
+  made.parts.blocks.push_back(std::move(block));
+  return made;
+}
+
+TEST(Cast, TheStandardDeviationOfACellIsThatOfDrawnPoints) {
+  testing::Random random(23);
+  for (int round = 0; round < 10; ++round) {
+    RandomCell made = random_cell(random);
+    Vector3d centre_m = Vector3d::Zero();
+    for (const Vector3d& p_m : made.points_m) centre_m += p_m / static_cast<double>(made.points_m.size());
+    const Vector3d direction = random.unit();
+    // Passes the cube's middle, not the centre itself.
+    const auto map = testing::map_of({}, std::move(made.parts));
+    const Vector3d middle_m = 0.1 * ((centre_m / 0.1).array().floor().matrix() + Vector3d::Constant(0.5));
+    const Ray ray{middle_m - 3.0 * direction, 2.5 * direction};
+    const RayHits hits = cast_one(map, ray);
+    ASSERT_TRUE(hits.cell.has_value()) << round;
+
+    constexpr int kDraws = 40'000;  // their standard deviation is good to 0.35 %
+    double sum = 0.0;
+    double sum2 = 0.0;
+    for (int i = 0; i < kDraws; ++i) {
+      Vector3d drawn_m = Vector3d::Zero();
+      for (std::size_t j = 0; j < made.points_m.size(); ++j) {
+        drawn_m += made.points_m[j] + made.sigmas_m[j].cwiseProduct(random.normals());
+      }
+      drawn_m /= static_cast<double>(made.points_m.size());
+      const double range_m = direction.dot(drawn_m - ray.origin_m);  // where the ray passes nearest to it
+      sum += range_m;
+      sum2 += range_m * range_m;
+    }
+    const double mean_m = sum / kDraws;
+    const double spread_m = std::sqrt(sum2 / kDraws - mean_m * mean_m);
+    EXPECT_NEAR(hits.cell->range_m, mean_m, 5.0 * spread_m / std::sqrt(kDraws)) << round;
+    EXPECT_NEAR(hits.cell->sigma_m / spread_m, 1.0, 0.03) << round;
   }
 }
 
