@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace planemap::client {
@@ -63,8 +64,16 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
     is_holding_ = is_holding_after_pages_ = false;
     released_.notify_all();
   }
-  /// NearestPlanes answers with a greater revision each time.
+  /// NearestPlanes answers with a greater revision each time: whatever is asked for, or where no map is named.
   void change_with_each_answer() { is_changing_ = true; }
+  void keep_maps_that_are_named() { is_keeping_ = is_changing_ = true; }
+  /// The next NearestPlanes that names a map is told that it has gone.
+  void forget_map() { has_forgotten_ = true; }
+  /// Points and revision of each answer of NearestPlanes.
+  std::vector<std::pair<int, std::uint64_t>> batches() {
+    const std::lock_guard lock(mutex_);
+    return batches_;
+  }
   /// What Watch says to each caller before it falls silent.
   void say(std::vector<v1::WatchEvent> events) { events_ = std::move(events); }
   int watches() const { return watches_; }
@@ -91,8 +100,12 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
   grpc::Status NearestPlanes(grpc::ServerContext*, const v1::NearestPlanesRequest* request,
                              v1::NearestPlanesResponse* response) override {
     if (!is_changing_) return grpc::Status::OK;
+    if (request->has_map() && has_forgotten_.exchange(false)) return {grpc::StatusCode::ABORTED, "map: is gone"};
     response->mutable_map()->set_epoch(7);
     response->mutable_map()->set_revision(++revision_);
+    if (is_keeping_ && request->has_map()) *response->mutable_map() = request->map();
+    const std::lock_guard lock(mutex_);
+    batches_.emplace_back(request->points_size(), response->map().revision());
     for (int i = 0; i < request->points_size(); ++i) response->add_results();
     return grpc::Status::OK;
   }
@@ -117,7 +130,10 @@ class FakeGrpcService final : public v1::PlaneMap::Service {
   std::atomic<bool> is_holding_ = false;
   std::atomic<bool> is_holding_after_pages_ = false;
   std::atomic<bool> is_changing_ = false;
+  std::atomic<bool> is_keeping_ = false;
+  std::atomic<bool> has_forgotten_ = false;
   std::atomic<std::uint64_t> revision_ = 0;
+  std::vector<std::pair<int, std::uint64_t>> batches_;
   std::atomic<int> watches_ = 0;
   std::vector<v1::SnapshotPage> pages_;
   std::vector<v1::WatchEvent> events_;

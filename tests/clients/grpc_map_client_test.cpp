@@ -186,6 +186,25 @@ TEST(GrpcMapClient, ManyItemsAreOfOneRevisionOrOfNone) {
                "the map changed faster than all could be asked of one revision; there was no answer within 0.3 s");
 }
 
+TEST(GrpcMapClient, ManyItemsAreAnsweredByOneMapHoweverFastItChanges) {
+  FakeGrpcService fake;
+  fake.keep_maps_that_are_named();
+  const auto client = client_of(fake.address());
+  const std::vector<QueryPoint> points(12000);
+  const auto near = client->nearest(points, {}, kLong);
+  ASSERT_TRUE(near) << near.error().message;
+  EXPECT_EQ(near->version.revision, 1);
+  EXPECT_EQ(near->points.size(), 12000u);
+  using Batches = std::vector<std::pair<int, std::uint64_t>>;
+  EXPECT_EQ(fake.batches(), (Batches{{5000, 1}, {5000, 1}, {2000, 1}}));
+  fake.forget_map();
+  const auto anew = client->nearest(points, {}, kLong);
+  ASSERT_TRUE(anew) << anew.error().message;
+  EXPECT_EQ(anew->version.revision, 5);
+  EXPECT_EQ(anew->points.size(), 12000u);
+  EXPECT_EQ(fake.batches(), (Batches{{5000, 1}, {5000, 1}, {2000, 1}, {5000, 4}, {5000, 5}, {5000, 5}, {2000, 5}}));
+}
+
 TEST(GrpcMapClient, AMapOfManyPagesIsWhole) {
   FakeGrpcService fake;
   for (std::uint32_t page = 0; page < 5; ++page) {

@@ -16,7 +16,7 @@ from planemap.v1 import planemap_service_pb2, planemap_service_pb2_grpc, queries
 
 from . import decode
 from .channel import DEFAULT_SERVER, Channel, PathLike
-from .errors import AnswerIncomplete, Unreachable
+from .errors import AnswerIncomplete, Gone, Unreachable
 from .shapes import Shape
 from .types import (
     Cells,
@@ -188,8 +188,10 @@ class Client:
                 raise ValueError("covariance_m2: is not symmetric")
             uppers = covariances[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
 
-        def ask(begin: int, end: int) -> tuple[map_pb2.MapVersion, list[queries_pb2.NearPlanes]]:
-            request = queries_pb2.NearestPlanesRequest(count=count, filter=_filter(filter))
+        def ask(
+            begin: int, end: int, map: map_pb2.MapVersion | None
+        ) -> tuple[map_pb2.MapVersion, list[queries_pb2.NearPlanes]]:
+            request = queries_pb2.NearestPlanesRequest(count=count, filter=_filter(filter), map=map)
             if max_distance_m is not None:
                 request.max_distance_m = max_distance_m
             for i in range(begin, end):
@@ -227,8 +229,12 @@ class Client:
         if max_range_m is not None:
             ranges = _broadcast(max_range_m, "max_range_m", (n,))
 
-        def ask(begin: int, end: int) -> tuple[map_pb2.MapVersion, list[queries_pb2.RayHits]]:
-            request = queries_pb2.CastRaysRequest(skip_planes=not planes, skip_cells=not cells, filter=_filter(filter))
+        def ask(
+            begin: int, end: int, map: map_pb2.MapVersion | None
+        ) -> tuple[map_pb2.MapVersion, list[queries_pb2.RayHits]]:
+            request = queries_pb2.CastRaysRequest(
+                skip_planes=not planes, skip_cells=not cells, filter=_filter(filter), map=map
+            )
             for i in range(begin, end):
                 ray = request.rays.add()
                 ray.origin_m.x, ray.origin_m.y, ray.origin_m.z = origins[i]
@@ -335,24 +341,31 @@ class Client:
             raise decode.malformed("the last page of the answer")
 
     def _in_parts(
-        self, ask: Callable[[int, int], tuple[map_pb2.MapVersion, list[Item]]], n: int, most: int
+        self,
+        ask: Callable[[int, int, map_pb2.MapVersion | None], tuple[map_pb2.MapVersion, list[Item]]],
+        n: int,
+        most: int,
     ) -> tuple[Version, list[Item]]:
-        """Asks for many items, so many at a time; anew where the map changes in between."""
+        """Asks for many items, so many at a time and all of the map that answered first; where the service does not keep
+        that one any more, anew."""
         deadline = time.monotonic() + self._timeout_s
         while True:
             items: list[Item] = []
-            version: Version | None = None
+            version: map_pb2.MapVersion | None = None
             for begin in range(0, n, most):
                 end = min(begin + most, n)
-                message, part = ask(begin, end)
+                try:
+                    message, part = ask(begin, end, version)
+                except Gone:
+                    break
                 if len(part) != end - begin:
                     raise decode.malformed("a batch")
-                if version is not None and version != decode.version_of(message):
+                if version is not None and version != message:
                     break
-                version = decode.version_of(message)
+                version = message
                 items += part
             if version is not None and len(items) == n:
-                return version, items
+                return decode.version_of(version), items
             if time.monotonic() >= deadline:
                 raise AnswerIncomplete(
                     f"the map changed faster than all {n} could be asked of one revision within {self._timeout_s:g} s; "

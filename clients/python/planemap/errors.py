@@ -29,6 +29,10 @@ class MalformedAnswer(PlanemapError):
     """The answer contradicts itself; does something else than a planemapd listen there?"""
 
 
+class Gone(PlanemapError):
+    """The service does not keep the map of the answers before any more; the client's calls start over then."""
+
+
 _REFUSALS = (
     grpc.StatusCode.INVALID_ARGUMENT,
     grpc.StatusCode.FAILED_PRECONDITION,
@@ -55,6 +59,8 @@ def error_of(error: grpc.RpcError, server: str, has_tls: bool, timeout_s: float)
         return Unreachable(f"no answer came from {server} within {timeout_s:g} s; a larger timeout_s waits longer")
     if code in (grpc.StatusCode.UNAUTHENTICATED, grpc.StatusCode.PERMISSION_DENIED):
         return Denied(f"the service refused the request: {said} (connect(..., token=...))")
+    if code == grpc.StatusCode.ABORTED:
+        return Gone(f"the service began anew: {said}")
     if code in _REFUSALS:
         return Refused(f"the service refused the request: {said}")
     return MalformedAnswer(f"the call to {server} failed: {said} ({code}); is a planemapd listening there?")

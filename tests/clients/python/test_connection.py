@@ -9,11 +9,12 @@ from concurrent import futures
 from pathlib import Path
 
 import grpc
+import numpy as np
 import pytest
 
 import planemap
 from daemon import Daemon
-from planemap.v1 import map_pb2, planemap_service_pb2_grpc
+from planemap.v1 import map_pb2, planemap_service_pb2_grpc, queries_pb2
 
 READER, ADMIN = "reader-0123456789abcdef", "admin-0123456789abcdef"
 
@@ -106,6 +107,20 @@ class Fake(planemap_service_pb2_grpc.PlaneMapServicer):
         self.pages: list[map_pb2.SnapshotPage] = []
         self.released = threading.Event()
         self.is_holding = False
+        self.newest = map_pb2.MapVersion(epoch=7, revision=1, utime=10)
+        self.is_keeping = True
+        self.batches: list[tuple[int, int]] = []
+
+    def NearestPlanes(self, request, context):  # noqa: N802
+        if request.HasField("map") and not self.is_keeping:
+            self.is_keeping = True
+            context.abort(grpc.StatusCode.ABORTED, "map: is not kept any more: ask all anew")
+        version = request.map if request.HasField("map") else self.newest
+        self.batches.append((len(request.points), version.revision))
+        self.newest = map_pb2.MapVersion(epoch=7, revision=self.newest.revision + 1, utime=self.newest.utime + 33333)
+        return queries_pb2.NearestPlanesResponse(
+            map=version, results=[queries_pb2.NearPlanes() for _ in request.points]
+        )
 
     def GetSnapshot(self, request, context):  # noqa: N802
         yield from self.pages
@@ -145,6 +160,18 @@ def test_answers_that_are_not_sound_are_not_taken(fake) -> None:
             fake.pages = pages
             with pytest.raises(planemap.MalformedAnswer, match="the service's answer cannot be used: "):
                 client.snapshot()
+
+
+def test_many_points_are_answered_by_one_map_however_fast_it_changes(fake) -> None:
+    points = np.zeros((12000, 3))
+    with planemap.connect(fake.server) as client:
+        near = client.nearest(points)
+        assert near.version == planemap.Version(7, 1, 10)
+        assert near.plane_id.shape[0] == 12000
+        assert fake.batches == [(5000, 1), (5000, 1), (2000, 1)]
+        fake.batches, fake.is_keeping = [], False
+        assert client.nearest(points).version.revision == 5
+        assert fake.batches == [(5000, 4), (5000, 5), (5000, 5), (2000, 5)], "once from the beginning"
 
 
 def test_an_answer_in_part_is_said_to_be(fake) -> None:

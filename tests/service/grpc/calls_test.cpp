@@ -283,6 +283,43 @@ TEST_F(Calls, AnotherEpochIsRefusedEverywhere) {
   expect_error(read_all(*stub_->GetCells(new_context().get(), cells)).second, code, words);
 }
 
+TEST_F(Calls, ABatchInSeveralCallsIsAnsweredByOneMap) {
+  v1::NearestPlanesResponse first;
+  ASSERT_TRUE(stub_->NearestPlanes(new_context().get(), nearest_request(), &first).ok());
+  v1::CastRaysRequest rays;
+  rays.add_rays()->mutable_direction()->set_z(1.0);
+  v1::CastRaysResponse first_hits;
+  ASSERT_TRUE(stub_->CastRays(new_context().get(), rays, &first_hits).ok());
+  daemon_.map_walls(3, 1040);
+  auto request = nearest_request();
+  v1::NearestPlanesResponse newest;
+  ASSERT_TRUE(stub_->NearestPlanes(new_context().get(), request, &newest).ok());
+  EXPECT_GT(newest.map().revision(), first.map().revision());
+
+  *request.mutable_map() = first.map();
+  v1::NearestPlanesResponse more;
+  auto status = stub_->NearestPlanes(new_context().get(), request, &more);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(more.SerializeAsString(), first.SerializeAsString());
+  *rays.mutable_map() = first_hits.map();
+  v1::CastRaysResponse more_hits;
+  status = stub_->CastRays(new_context().get(), rays, &more_hits);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(more_hits.SerializeAsString(), first_hits.SerializeAsString());
+
+  request.mutable_filter()->set_epoch(9);
+  expect_error(stub_->NearestPlanes(new_context().get(), request, &more), StatusCode::INVALID_ARGUMENT,
+               "filter.epoch: is 9, map.epoch is 1234");
+  request.clear_filter();
+  request.mutable_map()->set_revision(987654);
+  expect_error(stub_->NearestPlanes(new_context().get(), request, &more), StatusCode::ABORTED,
+               "map: epoch 1234 revision 987654 is not kept any more: ask all anew");
+  EXPECT_EQ(daemon_.counter("grpc.calls.failed.aborted"), 1);
+  v1::ResetResponse reset;
+  ASSERT_TRUE(daemon_.admin()->Reset(new_context().get(), {}, &reset).ok());
+  expect_error(stub_->CastRays(new_context().get(), rays, &more_hits), StatusCode::ABORTED, "ask all anew");
+}
+
 TEST_F(Calls, CellsOfTooManyPlanesAreRefused) {
   v1::GetCellsRequest request;
   for (PlaneId id = 1; id <= 10001; ++id) request.add_plane_ids(id);

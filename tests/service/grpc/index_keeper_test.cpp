@@ -6,13 +6,17 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <memory>
+#include <semaphore>
+#include <thread>
+#include <vector>
 
 namespace planemap::service {
 namespace {
 
-RegisteredScan wall_scan() {
+RegisteredScan wall_scan(std::int64_t utime = 1000000) {
   DepthScan scan;
-  scan.utime = 1000000;
+  scan.utime = utime;
   scan.intrinsics = {80, 60, 75.0, 75.0, 40.0, 30.0};
   scan.depth.assign(80 * 60, 1000);
   return RegisteredScan{0, scan, Eigen::Isometry3d::Identity()};
@@ -43,6 +47,55 @@ TEST(IndexKeeper, WhoAsksWaitsForTheIndexThatIsBeingMadeAndNoLonger) {
   release.set_value();
   EXPECT_EQ(second.get(), first.get());
   EXPECT_EQ(made, 1) << "the newer snapshot is not 60 s newer";
+}
+
+/// A mapper that is waited for, scan by scan.
+class KeptIndexes : public testing::Test {
+ protected:
+  KeptIndexes() { config_.grpc.index_age_s = 0.0; }
+  void map_one() {
+    const std::int64_t number = ++scans_;
+    counters_.scan_received();
+    mapping_.push(wall_scan(1000000 + number * 33333));
+    while (mapping_.snapshot()->utime() < 1000000 + number * 33333) mapped_.acquire();
+  }
+  static std::shared_ptr<const MapIndex> again(IndexKeeper& keeper, const MapIndex& index) {
+    const MapSnapshot& snapshot = index.snapshot();
+    return keeper.of_version(snapshot.epoch(), snapshot.revision(), snapshot.utime());
+  }
+
+  ServiceConfig config_;
+  Counters counters_;
+  std::counting_semaphore<> mapped_{0};
+  std::int64_t scans_ = 0;
+  MappingService mapping_{config_, 1, counters_, [this] { mapped_.release(); }};
+};
+
+TEST_F(KeptIndexes, AreTheLastOnesThatWereAskedFor) {
+  IndexKeeper keeper(config_, mapping_, [](const auto&) {});
+  std::vector<std::shared_ptr<const MapIndex>> given;
+  for (std::size_t i = 0; i < IndexKeeper::kKeptIndexes; ++i) {
+    map_one();
+    given.push_back(keeper.current());
+    EXPECT_EQ(again(keeper, *given[0]), given[0]) << i;
+  }
+  map_one();
+  given.push_back(keeper.current());
+  EXPECT_EQ(again(keeper, *given[1]), nullptr) << "the one for which nobody asked the longest";
+  for (const std::size_t i : {0, 2, 8}) EXPECT_EQ(again(keeper, *given[i]), given[i]) << i;
+  EXPECT_EQ(keeper.of_version(2, given[0]->snapshot().revision(), given[0]->snapshot().utime()), nullptr);
+}
+
+TEST_F(KeptIndexes, AreLetGoWhenNobodyAsksForThem) {
+  IndexKeeper keeper(
+      config_, mapping_, [](const auto&) {}, 0.02);
+  map_one();
+  const std::weak_ptr<const MapIndex> old = keeper.current();
+  map_one();
+  keeper.current();
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!old.expired() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_TRUE(old.expired());
 }
 
 }  // namespace

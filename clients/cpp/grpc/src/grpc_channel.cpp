@@ -107,6 +107,8 @@ Error GrpcChannel::error_of(const grpc::Status& status, std::chrono::millisecond
       return {Kind::kDenied, "the service refused the request: " + said};
     case StatusCode::UNIMPLEMENTED:
       return {Kind::kRefused, "the service cannot do that: " + said};
+    case StatusCode::ABORTED:
+      return {Kind::kGone, "the service began anew: " + said};
     case StatusCode::INVALID_ARGUMENT:
     case StatusCode::FAILED_PRECONDITION:
     case StatusCode::NOT_FOUND:

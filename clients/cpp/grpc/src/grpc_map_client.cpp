@@ -27,7 +27,8 @@ Expected<Response> call(GrpcChannel& channel, const Request& request, millisecon
   return channel.call(channel.plane_map(), method, request, timeout);
 }
 
-/// Where a batch that comes in several calls is answered by another version than its begin, all begins anew.
+/// A service that knows nothing of batches in several calls answers by its newest map: where that is another version
+/// than the begin's, all begins anew.
 Expected<MapVersion> one_version(const MapVersion& wanted, const MapVersion& got) {
   const bool is_same = wanted.epoch == 0 || (wanted.epoch == got.epoch && wanted.revision == got.revision);
   if (is_same) return got;
@@ -71,10 +72,14 @@ Expected<NearestAnswer> GrpcMapClient::nearest(std::span<const QueryPoint> point
                                                Timeout timeout) {
   if (auto good = check_query(points, options); !good) return tl::make_unexpected(good.error());
   NearestAnswer answer;
+  v1::MapVersion map;  // that answered the parts before
   const auto ask_part = [&](std::span<const QueryPoint> part, const MapVersion& version,
                             milliseconds left) -> Expected<MapVersion> {
-    const auto response = call(*channel_, nearest_message(part, options), left, &v1::PlaneMap::Stub::NearestPlanes);
+    v1::NearestPlanesRequest request = nearest_message(part, options);
+    if (version.epoch != 0) *request.mutable_map() = map;
+    const auto response = call(*channel_, request, left, &v1::PlaneMap::Stub::NearestPlanes);
     if (!response) return tl::make_unexpected(response.error());
+    map = response->map();
     bool sound = read(response->map(), answer.version) && response->results_size() == static_cast<int>(part.size());
     for (const v1::NearPlanes& result : response->results()) {
       sound &= read_all(result.planes(), answer.points.emplace_back());
@@ -92,10 +97,14 @@ Expected<NearestAnswer> GrpcMapClient::nearest(std::span<const QueryPoint> point
 Expected<CastAnswer> GrpcMapClient::cast(std::span<const Ray> rays, const CastOptions& options, Timeout timeout) {
   if (auto good = check_query(rays, options); !good) return tl::make_unexpected(good.error());
   CastAnswer answer;
+  v1::MapVersion map;  // that answered the parts before
   const auto ask_part = [&](std::span<const Ray> part, const MapVersion& version,
                             milliseconds left) -> Expected<MapVersion> {
-    const auto response = call(*channel_, rays_message(part, options), left, &v1::PlaneMap::Stub::CastRays);
+    v1::CastRaysRequest request = rays_message(part, options);
+    if (version.epoch != 0) *request.mutable_map() = map;
+    const auto response = call(*channel_, request, left, &v1::PlaneMap::Stub::CastRays);
     if (!response) return tl::make_unexpected(response.error());
+    map = response->map();
     const bool sound = read(response->map(), answer.version) &&
                        response->hits_size() == static_cast<int>(part.size()) &&
                        read_all(response->hits(), answer.rays);

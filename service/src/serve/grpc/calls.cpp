@@ -1,5 +1,7 @@
 #include "serve/grpc/calls.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <string_view>
 
 namespace planemap::service {
@@ -26,6 +28,8 @@ const char* name_of(grpc::StatusCode code) {
       return "unimplemented";
     case grpc::StatusCode::UNAVAILABLE:
       return "unavailable";
+    case grpc::StatusCode::ABORTED:
+      return "aborted";
     default:
       return "internal";
   }
@@ -62,6 +66,16 @@ grpc::Status CallDesk::counted(grpc::Status status) {
   return status;
 }
 
+grpc::Status no_room(const WorkerPool& pool) {
+  return {grpc::StatusCode::RESOURCE_EXHAUSTED,
+          std::to_string(pool.capacity()) + " calls wait already (grpc.max_waiting_calls); ask again later"};
+}
+
+grpc::Status internal_error(const std::exception& cause) {
+  spdlog::error("a call over gRPC could not be answered: {}", cause.what());
+  return {grpc::StatusCode::INTERNAL, std::string("the service could not answer: ") + cause.what()};
+}
+
 grpc::ServerUnaryReactor* answer(CallDesk& desk, grpc::CallbackServerContext* context, Scope needed,
                                  std::function<grpc::Status()> work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -75,14 +89,12 @@ grpc::ServerUnaryReactor* answer(CallDesk& desk, grpc::CallbackServerContext* co
     try {
       if (!context->IsCancelled()) result = work();
     } catch (const std::exception& e) {
-      result = {grpc::StatusCode::INTERNAL, e.what()};
+      result = internal_error(e);
     }
     reactor->Finish(desk.counted(std::move(result)));
   });
   if (!has_room) {
-    reactor->Finish(desk.counted(
-        {grpc::StatusCode::RESOURCE_EXHAUSTED,
-         std::to_string(desk.pool.capacity()) + " calls wait already (grpc.max_waiting_calls); ask again later"}));
+    reactor->Finish(desk.counted(no_room(desk.pool)));
   }
   return reactor;
 }

@@ -33,6 +33,11 @@ struct CallDesk {
   grpc::Status counted(grpc::Status status);
 };
 
+/// What a call ends with where as many as may wait already.
+grpc::Status no_room(const WorkerPool& pool);
+/// What a call ends with where the service itself failed; the log says so, too.
+grpc::Status internal_error(const std::exception& cause);
+
 /// One answer to one request, worked out on the pool.
 /// @param work  fills the response; runs on a thread of the pool, unless the caller has gone by then
 grpc::ServerUnaryReactor* answer(CallDesk& desk, grpc::CallbackServerContext* context, Scope needed,
@@ -56,8 +61,7 @@ class PageReactor : public grpc::ServerWriteReactor<Page> {
       reactor->is_in_ = status.ok();
     }
     if (status.ok() && !desk.pool.try_post([reactor, begin = std::move(begin)] { reactor->open(begin); })) {
-      status = {grpc::StatusCode::RESOURCE_EXHAUSTED,
-                std::to_string(desk.pool.capacity()) + " calls wait already (grpc.max_waiting_calls)"};
+      status = no_room(desk.pool);
     }
     if (!status.ok()) reactor->end(std::move(status));
     return reactor;
@@ -82,7 +86,7 @@ class PageReactor : public grpc::ServerWriteReactor<Page> {
     try {
       next_ = begin(status);
     } catch (const std::exception& e) {
-      status = {grpc::StatusCode::INTERNAL, e.what()};
+      status = internal_error(e);
     }
     if (!status.ok()) return end(std::move(status));
     make_page();
@@ -93,7 +97,7 @@ class PageReactor : public grpc::ServerWriteReactor<Page> {
     try {
       is_last_ = next_(page_);
     } catch (const std::exception& e) {
-      return end({grpc::StatusCode::INTERNAL, e.what()});
+      return end(internal_error(e));
     }
     this->StartWrite(&page_);
   }

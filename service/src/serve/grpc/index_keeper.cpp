@@ -11,12 +11,13 @@
 
 namespace planemap::service {
 
-IndexKeeper::IndexKeeper(const ServiceConfig& config, const MappingService& mapping, OnIndex on_index)
+IndexKeeper::IndexKeeper(const ServiceConfig& config, const MappingService& mapping, OnIndex on_index, double kept_s)
     : mapping_(mapping),
       gravity_(gravity_of(config.map)),
       index_age_s_(config.grpc.index_age_s),
       watch_period_s_(config.grpc.watch_period_s),
-      on_index_(std::move(on_index)) {
+      on_index_(std::move(on_index)),
+      kept_s_(kept_s) {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -35,8 +36,40 @@ void IndexKeeper::stop() {
 }
 
 std::shared_ptr<const MapIndex> IndexKeeper::current() {
-  const auto newest = mapping_.snapshot();
   std::unique_lock lock(mutex_);
+  auto index = newest_index(lock);
+  if (index) keep(index, steady_now_s());
+  return index;
+}
+
+std::shared_ptr<const MapIndex> IndexKeeper::of_version(std::uint64_t epoch, std::uint64_t revision,
+                                                        std::int64_t utime) {
+  if (mapping_.snapshot()->epoch() != epoch) return nullptr;
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
+    const MapSnapshot& snapshot = kept.index->snapshot();
+    return snapshot.epoch() == epoch && snapshot.revision() == revision && snapshot.utime() == utime;
+  });
+  if (found == kept_.end()) return nullptr;
+  auto index = found->index;
+  keep(index, steady_now_s());
+  return index;
+}
+
+/// Puts an index in front of those that are kept.
+void IndexKeeper::keep(const std::shared_ptr<const MapIndex>& index, double now_s) {
+  if (kept_.empty()) woken_.notify_all();  // the thread forgets it when its time has come
+  std::erase_if(kept_, [&](const Kept& kept) { return kept.index == index; });
+  kept_.push_front({index, now_s});
+  if (kept_.size() > kKeptIndexes) kept_.pop_back();
+}
+
+void IndexKeeper::forget_old(double now_s) {
+  while (!kept_.empty() && kept_.back().asked_at_s + kept_s_ <= now_s) kept_.pop_back();
+}
+
+std::shared_ptr<const MapIndex> IndexKeeper::newest_index(std::unique_lock<std::mutex>& lock) {
+  const auto newest = mapping_.snapshot();
   if (index_ && &index_->snapshot() == newest.get()) return index_;
   const double now_s = steady_now_s();
   const double age_s = now_s - taken_at_s_;
@@ -79,14 +112,16 @@ bool IndexKeeper::has_to_build(double now_s) const {
 }
 
 double IndexKeeper::due_in_s(double now_s) const {
-  constexpr double kLongS = 3600.0;
-  return watchers_ > 0 && has_news_ ? std::max(0.0, taken_at_s_ + watch_period_s_ - now_s) : kLongS;
+  double due_s = kept_.empty() ? now_s + 3600.0 : kept_.back().asked_at_s + kept_s_;
+  if (watchers_ > 0 && has_news_) due_s = std::min(due_s, taken_at_s_ + watch_period_s_);
+  return std::max(0.0, due_s - now_s);
 }
 
 void IndexKeeper::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     const double now_s = steady_now_s();
+    forget_old(now_s);
     if (has_to_build(now_s)) {
       build(lock);
       continue;
@@ -94,9 +129,11 @@ void IndexKeeper::run(const std::stop_token& stop) {
     const std::uint64_t wanted = wanted_;
     const int watchers = watchers_;
     const bool has_news = has_news_;
+    const bool keeps_none = kept_.empty();
     // Wakes for what makes a difference: while nobody watches, the mapper's many snapshots do not.
     woken_.wait_for(lock, stop, std::chrono::duration<double>(due_in_s(now_s)), [&] {
-      return wanted_ != wanted || watchers_ != watchers || (watchers_ > 0 && has_news_ != has_news);
+      return wanted_ != wanted || watchers_ != watchers || (watchers_ > 0 && has_news_ != has_news) ||
+             kept_.empty() != keeps_none;
     });
   }
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -18,10 +20,14 @@ namespace planemap::service {
 /// or watches. The mapper is never waited for, and never waits.
 class IndexKeeper {
  public:
+  static constexpr std::size_t kKeptIndexes = 8;
+  static constexpr double kKeptS = 10.0;
+
   using OnIndex = std::function<void(const std::shared_ptr<const MapIndex>&)>;
 
   /// @param on_index  told of each new index, on the keeper's thread
-  IndexKeeper(const ServiceConfig& config, const MappingService& mapping, OnIndex on_index);
+  /// @param kept_s    for how long an index is kept after it was last asked for
+  IndexKeeper(const ServiceConfig& config, const MappingService& mapping, OnIndex on_index, double kept_s = kKeptS);
   ~IndexKeeper();
   IndexKeeper(const IndexKeeper&) = delete;
   IndexKeeper& operator=(const IndexKeeper&) = delete;
@@ -29,6 +35,9 @@ class IndexKeeper {
   /// An index of the newest snapshot, or of one that was the newest at most grpc.index_age_s ago; never of another
   /// epoch than the newest. Waits while it is made.
   std::shared_ptr<const MapIndex> current();
+  /// That of an answer before, or nullptr: it is kept no more, or of another epoch than the newest. The last
+  /// kKeptIndexes that current() gave are kept, each for a while after it was last asked for.
+  std::shared_ptr<const MapIndex> of_version(std::uint64_t epoch, std::uint64_t revision, std::int64_t utime);
   /// There is a new snapshot. Returns at once; from any thread.
   void wake();
   /// Somebody wants to be told of each new snapshot, at most once in grpc.watch_period_s; or not any more.
@@ -38,6 +47,14 @@ class IndexKeeper {
   void stop();
 
  private:
+  struct Kept {
+    std::shared_ptr<const MapIndex> index;
+    double asked_at_s = 0.0;
+  };
+
+  std::shared_ptr<const MapIndex> newest_index(std::unique_lock<std::mutex>& lock);
+  void keep(const std::shared_ptr<const MapIndex>& index, double now_s);
+  void forget_old(double now_s);
   void run(const std::stop_token& stop);
   bool has_to_build(double now_s) const;
   double due_in_s(double now_s) const;
@@ -48,11 +65,13 @@ class IndexKeeper {
   const double index_age_s_;
   const double watch_period_s_;
   OnIndex on_index_;
+  const double kept_s_;
 
   std::mutex mutex_;  ///< of what follows; not held while an index is made
   std::condition_variable_any woken_;
   std::condition_variable built_;
   std::shared_ptr<const MapIndex> index_;  ///< nullptr: none was asked for yet
+  std::deque<Kept> kept_;                  ///< what was asked for last in front
   double taken_at_s_ = 0.0;                ///< when its snapshot was the newest
   std::uint64_t begun_ = 0;                ///< indexes whose making has begun
   std::uint64_t done_ = 0;

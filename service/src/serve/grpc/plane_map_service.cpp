@@ -31,6 +31,14 @@ bool has_gone(const grpc::CallbackServerContext& context, std::size_t item) {
 
 }  // namespace
 
+grpc::Status checked_size(v1::GetFloorPlanResponse& plan) {
+  const std::size_t bytes = plan.ByteSizeLong();
+  if (bytes <= kMaxMessageBytes) return grpc::Status::OK;
+  plan.Clear();
+  return {grpc::StatusCode::RESOURCE_EXHAUSTED,
+          fmt::format("the floor plan takes {} bytes (at most {}); ask with a filter", bytes, kMaxMessageBytes)};
+}
+
 PlaneMapService::PlaneMapService(CallDesk& desk, IndexKeeper& keeper, WatchHub& hub, std::string frame,
                                  StatusMaker status)
     : desk_(desk), keeper_(keeper), hub_(hub), frame_(std::move(frame)), status_(std::move(status)) {}
@@ -50,11 +58,31 @@ std::shared_ptr<const MapIndex> PlaneMapService::index_for(std::uint64_t epoch, 
   return index;
 }
 
-grpc::ServerUnaryReactor* PlaneMapService::ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask,
-                                                   const char* epoch_name) {
-  return answer(desk_, context, Scope::kRead, [this, epoch, epoch_name, ask = std::move(ask)] {
+/// The newest index, or that of the map which a part of a batch names. @param request  outlives what is given
+template <class BatchRequest>
+PlaneMapService::Choose PlaneMapService::index_of_batch(const BatchRequest& request) {
+  return [this, &request](grpc::Status& status) -> std::shared_ptr<const MapIndex> {
+    const std::uint64_t epoch = request.filter().epoch();
+    if (!request.has_map()) return index_for(epoch, status);
+    const v1::MapVersion& map = request.map();
+    if (epoch != 0 && epoch != map.epoch()) {
+      status = {grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format("filter.epoch: is {}, map.epoch is {}", epoch, map.epoch())};
+      return nullptr;
+    }
+    auto index = keeper_.of_version(map.epoch(), map.revision(), map.utime());
+    if (!index) {
+      status = {grpc::StatusCode::ABORTED, fmt::format("map: epoch {} revision {} is not kept any more: ask all anew",
+                                                       map.epoch(), map.revision())};
+    }
+    return index;
+  };
+}
+
+grpc::ServerUnaryReactor* PlaneMapService::ask_map(grpc::CallbackServerContext* context, Choose choose, Ask ask) {
+  return answer(desk_, context, Scope::kRead, [choose = std::move(choose), ask = std::move(ask)] {
     grpc::Status status;
-    const auto index = index_for(epoch, status, epoch_name);
+    const auto index = choose(status);
     return index ? ask(*index) : status;
   });
 }
@@ -71,7 +99,7 @@ grpc::ServerUnaryReactor* PlaneMapService::GetPlane(grpc::CallbackServerContext*
                                                     const v1::GetPlaneRequest* request,
                                                     v1::GetPlaneResponse* response) {
   return ask_map(
-      context, request->epoch(),
+      context, [this, request](grpc::Status& status) { return index_for(request->epoch(), status, "epoch"); },
       [request, response](const MapIndex& index) -> grpc::Status {
         const auto lookup = index.queries().plane(request->plane_id());
         if (!lookup) return {grpc::StatusCode::INVALID_ARGUMENT, "plane_" + lookup.error().message};
@@ -84,14 +112,14 @@ grpc::ServerUnaryReactor* PlaneMapService::GetPlane(grpc::CallbackServerContext*
         *response->mutable_map() = version_of(index.snapshot());
         if (response->has_plane()) cut_to_fit(*response->mutable_plane(), kMaxItemBytes / 2);
         return grpc::Status::OK;
-      },
-      "epoch");
+      });
 }
 
 grpc::ServerUnaryReactor* PlaneMapService::GetFloorPlan(grpc::CallbackServerContext* context,
                                                         const v1::GetFloorPlanRequest* request,
                                                         v1::GetFloorPlanResponse* response) {
-  return ask_map(context, request->filter().epoch(), [request, response](const MapIndex& index) -> grpc::Status {
+  const auto choose = [this, request](grpc::Status& status) { return index_for(request->filter().epoch(), status); };
+  return ask_map(context, choose, [request, response](const MapIndex& index) -> grpc::Status {
     const auto query = to_query(*request);
     if (!query) return invalid(query.error());
     const auto plan = index.queries().floorplan(*query);
@@ -103,19 +131,14 @@ grpc::ServerUnaryReactor* PlaneMapService::GetFloorPlan(grpc::CallbackServerCont
     }
     *response = to_proto(*plan);
     *response->mutable_map() = version_of(index.snapshot());
-    if (const std::size_t bytes = response->ByteSizeLong(); bytes > kMaxMessageBytes) {
-      response->Clear();
-      return {grpc::StatusCode::RESOURCE_EXHAUSTED,
-              fmt::format("the floor plan takes {} bytes (at most {}); ask with a filter", bytes, kMaxMessageBytes)};
-    }
-    return grpc::Status::OK;
+    return checked_size(*response);
   });
 }
 
 grpc::ServerUnaryReactor* PlaneMapService::NearestPlanes(grpc::CallbackServerContext* context,
                                                          const v1::NearestPlanesRequest* request,
                                                          v1::NearestPlanesResponse* response) {
-  return ask_map(context, request->filter().epoch(),
+  return ask_map(context, index_of_batch(*request),
                  [context, request, response](const MapIndex& index) -> grpc::Status {
                    const auto queries = to_queries(*request);
                    if (!queries) return invalid(queries.error());
@@ -135,7 +158,7 @@ grpc::ServerUnaryReactor* PlaneMapService::CastRays(grpc::CallbackServerContext*
                                                     const v1::CastRaysRequest* request,
                                                     v1::CastRaysResponse* response) {
   return ask_map(
-      context, request->filter().epoch(), [context, request, response](const MapIndex& index) -> grpc::Status {
+      context, index_of_batch(*request), [context, request, response](const MapIndex& index) -> grpc::Status {
         const auto query = to_query(*request);
         if (!query) return invalid(query.error());
         *response->mutable_map() = version_of(index.snapshot());
@@ -207,7 +230,7 @@ grpc::ServerWriteReactor<v1::RegionPage>* PlaneMapService::QueryRegion(grpc::Cal
     const auto query = to_query(*request);
     auto contents = query ? index->queries().region(*query) : tl::make_unexpected(query.error());
     if (!contents) {
-      status = invalid(of_region(contents.error(), "pose.position_m"));
+      status = invalid(of_region(contents.error(), kGrpcRegionNames));
       return {};
     }
     return region_pages(index, std::move(*contents));

@@ -11,6 +11,9 @@
 
 namespace planemap::service {
 
+/// OK where a floor plan fits in one message; else it is emptied, and the status says what takes too much.
+grpc::Status checked_size(v1::GetFloorPlanResponse& plan);
+
 /// planemap.v1.PlaneMap on the last snapshot.
 class PlaneMapService final : public v1::PlaneMap::CallbackService {
  public:
@@ -41,8 +44,10 @@ class PlaneMapService final : public v1::PlaneMap::CallbackService {
 
  private:
   using Ask = std::function<grpc::Status(const MapIndex&)>;
-  grpc::ServerUnaryReactor* ask_map(grpc::CallbackServerContext* context, std::uint64_t epoch, Ask ask,
-                                    const char* epoch_name = "filter.epoch");
+  using Choose = std::function<std::shared_ptr<const MapIndex>(grpc::Status&)>;
+  grpc::ServerUnaryReactor* ask_map(grpc::CallbackServerContext* context, Choose choose, Ask ask);
+  template <class BatchRequest>
+  Choose index_of_batch(const BatchRequest& request);
   std::shared_ptr<const MapIndex> index_for(std::uint64_t epoch, grpc::Status& status,
                                             const char* epoch_name = "filter.epoch");
 
