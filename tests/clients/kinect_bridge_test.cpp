@@ -111,6 +111,12 @@ TEST_F(KinectBridge, SaysWhatPlanemapdMustBeToldOfAFormat) {
                           "'inputs.0.disparity=[0.075, 1090]'"),
             std::string::npos)
       << said.err;
+  const Finished of_many = bridge("--simulate apartment --frames 2 --format image_array --log '" + path("array") + "'");
+  EXPECT_EQ(of_many.exit_code, 0);
+  EXPECT_NE(of_many.err.find("such scans need: planemapd --set 'inputs.0.intrinsics=[585, 585, 320, 240]' --set "
+                             "'inputs.0.frame=kinect'"),
+            std::string::npos)
+      << of_many.err;
 }
 
 TEST_F(KinectBridge, FailuresAreOneAndSayWhatToDo) {

@@ -107,7 +107,7 @@ drake::lcmt_image_array to_image_array(const DepthScan& scan, DrakePixels pixels
   auto& depth = array.images[1];
   const bool is_float = pixels == DrakePixels::kFloat32;
   depth.header.utime = scan.utime;
-  depth.header.frame_name = "kinect";
+  depth.header.frame_name = kDepthFrame;
   depth.width = scan.intrinsics.width;
   depth.height = scan.intrinsics.height;
   depth.row_stride = (is_float ? 4 : 2) * scan.intrinsics.width;

@@ -25,6 +25,9 @@ kinect::frame_msg_t to_kinect_disparity(const DepthScan& scan, Encoding encoding
 constexpr double kDisparityBaselineM = 0.075;
 constexpr double kDisparityOffset = 1090.0;
 
+/// Frame of the depth image in an array of images.
+constexpr const char* kDepthFrame = "kinect";
+
 /// An empty colour image and the depth.
 bot_core::images_t to_images(const DepthScan& scan, Encoding encoding);
 /// 16-bit grey, little-endian; the type knows no compression.

@@ -84,6 +84,9 @@ std::string settings_for(ScanType type, const PinholeIntrinsics& camera) {
   if (info_of(type).brings_intrinsics) return {};
   std::string text =
       fmt::format("--set 'inputs.0.intrinsics=[{}, {}, {}, {}]'", camera.fx, camera.fy, camera.cx, camera.cy);
+  if (type == ScanType::kImageArray || type == ScanType::kImageArrayFloat) {
+    text += fmt::format(" --set 'inputs.0.frame={}'", kDepthFrame);
+  }
   if (type == ScanType::kKinectDisparity) {
     text += fmt::format(" --set 'inputs.0.disparity=[{}, {}]'", kDisparityBaselineM, kDisparityOffset);
   }
