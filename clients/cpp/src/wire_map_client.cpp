@@ -1,6 +1,9 @@
 #include "planemap/client/wire_map_client.hpp"
 
+#include <string_view>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "ask_in_parts.hpp"
 #include "deadline.hpp"
@@ -17,6 +20,25 @@ using std::chrono::milliseconds;
 
 /// What one request may bring at most, as lcmtypes/planemap_lcm says.
 constexpr std::size_t kMostInARequest = 700;
+
+/// The request has the same few members for all shapes; whoever asks knows a shape's own.
+Error by_the_names_of(const RegionQuery& query, Error error) {
+  using Names = std::vector<std::pair<std::string_view, std::string_view>>;
+  const Names of_box = {{"box.from_m", "box.min_m"}, {" to_m's ", " max_m's "}};
+  const Names of_sphere = {{"sphere.from_m", "sphere.centre_m"}};
+  const Names of_pose = {{".from_m", ".pose.position_m"}, {".rotation_wxyz", ".pose.rotation_wxyz"}};
+  const bool has_pose =
+      std::holds_alternative<OrientedBox>(query.region) || std::holds_alternative<Frustum>(query.region);
+  const Names names = std::holds_alternative<Box>(query.region)      ? of_box
+                      : std::holds_alternative<Sphere>(query.region) ? of_sphere
+                      : has_pose                                     ? of_pose
+                                                                     : Names();
+  for (const auto& [wire, own] : names) {
+    const auto at = error.message.find(wire);
+    if (at != std::string::npos) error.message.replace(at, wire.size(), own);
+  }
+  return error;
+}
 
 }  // namespace
 
@@ -99,7 +121,9 @@ Expected<CastAnswer> WireMapClient::cast(std::span<const Ray> rays, const CastOp
 
 Expected<RegionAnswer> WireMapClient::region(const RegionQuery& query, milliseconds timeout) {
   if (auto good = check_filter(query.filter); !good) return tl::make_unexpected(good.error());
-  return ask(region_request(query), timeout).map(region_of_pages);
+  return ask(region_request(query), timeout).map(region_of_pages).map_error([&](Error error) {
+    return by_the_names_of(query, std::move(error));
+  });
 }
 
 Expected<PlaneAnswer> WireMapClient::plane(std::int64_t id, milliseconds timeout) {

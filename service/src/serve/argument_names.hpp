@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <planemap/expected.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,13 +18,27 @@ inline Error of_point(std::size_t number, const Error& error) {
   return is_its_own ? Error{fmt::format("points[{}].{}", number, error.message)} : error;
 }
 
-/// Of a region: what core has as a pose was sent as rotation, which is checked when it is read, and position.
-/// @param position  name of the position's field, below the shape's
-inline Error of_region(const Error& error, std::string_view position) {
-  for (const std::string_view pose : {"oriented_box.T_world_box", "frustum.T_world_sensor"}) {
-    if (error.message.rfind(pose, 0) != 0) continue;
-    const std::string_view shape = pose.substr(0, pose.find('.'));
-    return Error{fmt::format("{}.{}{}", shape, position, std::string_view(error.message).substr(pose.size()))};
+/// What a shape's member is called in core, and in a request.
+struct RegionName {
+  std::string_view core;
+  std::string_view request;
+};
+
+/// planemap.v1 has a pose's rotation, which is checked when it is read, and position.
+inline constexpr RegionName kGrpcRegionNames[] = {{"oriented_box.T_world_box", "oriented_box.pose.position_m"},
+                                                  {"frustum.T_world_sensor", "frustum.pose.position_m"}};
+/// region_query_t has the same few members for all shapes.
+inline constexpr RegionName kLcmRegionNames[] = {{"box.min_m", "box.from_m"},
+                                                 {" max_m's ", " to_m's "},
+                                                 {"oriented_box.T_world_box", "oriented_box.from_m"},
+                                                 {"sphere.centre_m", "sphere.from_m"},
+                                                 {"frustum.T_world_sensor", "frustum.from_m"}};
+
+/// An error about a region, by the request's names.
+inline Error of_region(Error error, std::span<const RegionName> names) {
+  for (const auto& [core, request] : names) {
+    const auto at = error.message.find(core);
+    if (at != std::string::npos) error.message.replace(at, core.size(), request);
   }
   return error;
 }

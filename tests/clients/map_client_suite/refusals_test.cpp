@@ -66,6 +66,10 @@ TEST_P(MapClientSuite, WrongQuestionsAreRefusedInWords) {
   };
   expect_refused(region(Box{{1, 0, 0}, {0, 1, 1}}), "box.min_m.x: must be less than max_m's 0, is 1");
   expect_refused(region(Sphere{{0, 0, 0}, -1}), "sphere.radius_m: must be greater than 0");
+  expect_refused(region(Sphere{{nan, 0, 0}, 1}), "sphere.centre_m: not every coordinate is a finite number");
+  expect_refused(region(OrientedBox{{{0, 0, 2e6}}, {1, 1, 1}}),
+                 "oriented_box.pose.position_m: coordinates may be at most 1e+06 m, one is 2e+06");
+  expect_refused(region(Frustum{{{0, 0, 2e6}}, 1.0, 1.0, 0.0, 1.0}), "frustum.pose.position_m: coordinates may be at");
   expect_refused(region(OrientedBox{{{}, {1, 1, 0, 0}}, {1, 1, 1}}),
                  "must be a unit quaternion, its length is 1.41421");
   expect_refused(region(Frustum{{}, 4.0, 1.0, 0.0, 1.0}), "frustum.horizontal_rad: must be greater than 0 and less");

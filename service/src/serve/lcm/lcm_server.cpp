@@ -107,8 +107,12 @@ void LcmServer::answer(const Request& request) {
   auto reply = answerer_.answer(
       request, mapping_.snapshot(), [this] { return status(); }, utime_now());
   counters_.add(reply.error.empty() ? "requests.answered" : "requests.answered_with_error");
-  if (!reply.error.empty())
+  if (reply.has_failed) {
+    counters_.add("requests.errors");
+    spdlog::error("request {} on {}: {}", request.request_id, request.reply_channel, reply.error);
+  } else if (!reply.error.empty()) {
     spdlog::debug("request {} on {}: {}", request.request_id, request.reply_channel, reply.error);
+  }
   {
     const std::lock_guard lock(mutex_);
     answers_.push_back(std::move(reply));

@@ -148,7 +148,7 @@ std::optional<Refusal> answer_from(const SnapshotQueries& queries, const Request
       const auto query = to_query(arguments.region.front(), *filter);
       if (!query) return refuse(query.error());
       const auto contents = queries.region(*query);
-      return contents ? add(answer, contents) : refuse(of_region(contents.error(), "from_m"));
+      return contents ? add(answer, contents) : refuse(of_region(contents.error(), kLcmRegionNames));
     }
     case request_t::OPERATION_PLANE:
       return add_plane(queries, arguments.plane.front().id, answer);

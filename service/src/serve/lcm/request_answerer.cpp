@@ -3,7 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <exception>
 #include <planemap_lcm/request_t.hpp>
+#include <string>
 #include <utility>
 
 namespace planemap::service {
@@ -20,7 +22,7 @@ bool is_same_question(const Kept& kept, const Request& request) {
 
 Reply all_pages(const Request& request, std::shared_ptr<const Pages> pages) {
   const std::size_t count = pages->size();
-  return Reply{request.reply_channel, request.request_id, std::move(pages), 0, count, {}};
+  return Reply{request.reply_channel, request.request_id, std::move(pages), 0, count, {}, false};
 }
 
 }  // namespace
@@ -41,6 +43,19 @@ Reply RequestAnswerer::answer(const Request& request, const std::shared_ptr<cons
   header.revision = static_cast<std::int64_t>(snapshot->revision());
   header.status = reply_t::STATUS_OK;
   header.frame = frame_;
+  try {
+    return checked_answer(request, header, snapshot, status);
+  } catch (const std::exception& e) {
+    auto reply =
+        error(request, header, {reply_t::STATUS_FAILED, std::string("the service could not answer: ") + e.what()});
+    reply.has_failed = true;
+    return reply;
+  }
+}
+
+Reply RequestAnswerer::checked_answer(const Request& request, const reply_t& header,
+                                      const std::shared_ptr<const MapSnapshot>& snapshot,
+                                      const std::function<planemap_lcm::status_t()>& status) {
   const bool is_status = request.operation == request_t::OPERATION_STATUS;
   if (!is_status && !is_map_operation(request.operation)) {
     return error(request, header,
@@ -53,8 +68,8 @@ Reply RequestAnswerer::answer(const Request& request, const std::shared_ptr<cons
                   fmt::format("page is {} (allowed: -1 for all, or the number of a lost page)", request.page)});
   }
   if (auto refusal = check_arguments(request)) return error(request, header, std::move(*refusal));
-  if (is_status) return status_reply(request, std::move(header), status);
-  return request.page >= 0 ? lost_page(request, header) : whole_answer(request, std::move(header), snapshot);
+  if (is_status) return status_reply(request, header, status);
+  return request.page >= 0 ? lost_page(request, header) : whole_answer(request, header, snapshot);
 }
 
 Reply RequestAnswerer::status_reply(const Request& request, reply_t header,
@@ -122,7 +137,7 @@ Reply RequestAnswerer::lost_page(const Request& request, const reply_t& header) 
                  {reply_t::STATUS_BAD_REQUEST,
                   fmt::format("page {} of {} (they are counted from 0)", page, kept->pages->size())});
   }
-  return Reply{request.reply_channel, request.request_id, kept->pages, page, page + 1, {}};
+  return Reply{request.reply_channel, request.request_id, kept->pages, page, page + 1, {}, false};
 }
 
 Reply RequestAnswerer::error(const Request& request, reply_t header, Refusal refusal) const {

@@ -24,7 +24,8 @@ struct Reply {
   std::shared_ptr<const Pages> pages;
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::string error;  ///< why it is an error reply; empty: it is none
+  std::string error;        ///< why it is an error reply; empty: it is none
+  bool has_failed = false;  ///< the error is the service's own
 };
 
 /// Answers requests from a snapshot; keeps the last replies and their snapshots, so that lost pages can be asked for
@@ -37,10 +38,14 @@ class RequestAnswerer {
   /// @param snapshot  the newest
   /// @param status    makes the service's status; called only if it is asked for
   /// @param utime     the service's clock
+  /// Where it fails itself (an exception), that is the answer: who asks would only ask again.
   Reply answer(const Request& request, const std::shared_ptr<const MapSnapshot>& snapshot,
                const std::function<planemap_lcm::status_t()>& status, std::int64_t utime);
 
  private:
+  Reply checked_answer(const Request& request, const planemap_lcm::reply_t& header,
+                       const std::shared_ptr<const MapSnapshot>& snapshot,
+                       const std::function<planemap_lcm::status_t()>& status);
   /// A reply is found again by the channel that it went to, so that two clients who asked at different times never get
   /// pages of each other's reply.
   struct Kept {
