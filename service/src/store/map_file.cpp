@@ -302,8 +302,4 @@ void MapFile::write_facts(const MapSnapshot& map, Rows& rows, bool closing) {
   rows.facts = std::move(facts);
 }
 
-StoreExpected<void> MapFile::copy_to(const std::filesystem::path& path) {
-  return copy_database(*database_, path);
-}
-
 }  // namespace planemap::service

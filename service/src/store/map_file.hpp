@@ -78,8 +78,6 @@ class MapFile {
   const std::shared_ptr<const MapSnapshot>& committed() const { return last_; }
   /// The last commit: marks are what was used, so that nothing is skipped, and the file is one file without a WAL.
   StoreExpected<std::size_t> close(const std::shared_ptr<const MapSnapshot>& map);
-  /// A consistent copy, which appears whole or not at all.
-  StoreExpected<void> copy_to(const std::filesystem::path& path);
 
  private:
   MapFile(const std::filesystem::path& path, Database database);

@@ -186,12 +186,16 @@ StoreExpected<ReadMap> read_map(Database& database, const fs::path& path) {
   }
 }
 
-StoreExpected<void> copy_database(Database& database, const fs::path& path) {
+StoreExpected<bool> copy_database(Database& database, const fs::path& path, const std::stop_token& stop) {
   const fs::path part = path.string() + ".part";
   try {
-    database.copy_to(part);
-    put_in_place(part, path);
-    return {};
+    const bool done = database.copy_to(part, stop);
+    if (done) {
+      put_in_place(part, path);
+    } else {
+      fs::remove(part);
+    }
+    return done;
   } catch (const SqliteError& error) {
     std::error_code ignored;
     fs::remove(part, ignored);

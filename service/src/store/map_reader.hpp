@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <planemap/snapshot.hpp>
+#include <stop_token>
 #include <unordered_map>
 #include <vector>
 
@@ -30,7 +31,9 @@ StoreExpected<Database> open_database(const std::filesystem::path& path, Databas
 /// Reads all of it at one instant, and verifies it.
 StoreExpected<ReadMap> read_map(Database& database, const std::filesystem::path& path);
 /// A consistent copy, which appears whole or not at all.
-StoreExpected<void> copy_database(Database& database, const std::filesystem::path& path);
+/// @return whether it is done; false: it was stopped before
+StoreExpected<bool> copy_database(Database& database, const std::filesystem::path& path,
+                                  const std::stop_token& stop = {});
 
 /// A map as a file that is closed in good order, which appears whole or not at all; what had its name is replaced.
 StoreExpected<void> write_map_file(const std::filesystem::path& path, const MapFacts& facts,

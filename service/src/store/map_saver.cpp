@@ -25,6 +25,7 @@ MapSaver::MapSaver(const StoreConfig& config, MapStore store, MappingService& ma
     : config_(config),
       mapping_(mapping),
       counters_(counters),
+      backups_(store.path, counters),
       store_(std::move(store)),
       repeats_(kWarnPeriodS),
       next_backup_(std::chrono::steady_clock::now()),
@@ -45,22 +46,27 @@ void MapSaver::stop() {
 
 void MapSaver::run(const std::stop_token& stop) {
   run_in_background(kNice);
+  auto next = std::chrono::steady_clock::now();
   while (!stop.stop_requested()) {
+    next += seconds(config_.interval_s);  // from begin to begin: else what a commit takes came on top of the interval
     std::uint64_t asked = 0;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, stop, seconds(config_.interval_s), [&] { return asked_saves_ != done_saves_; });
+      changed_.wait_until(lock, stop, next, [&] { return asked_saves_ != done_saves_; });
       asked = asked_saves_;
     }
     if (stop.stop_requested()) break;
+    next = std::chrono::steady_clock::now();
     commit(false);
-    if (config_.backup_s > 0.0 && std::chrono::steady_clock::now() >= next_backup_) back_up();
+    note_time(std::chrono::steady_clock::now() - next);
+    back_up_if_due();
     {
       const std::lock_guard lock(mutex_);
       done_saves_ = asked;
     }
     changed_.notify_all();
   }
+  backups_.stop();
   commit(true);
 }
 
@@ -101,13 +107,26 @@ StoreExpected<std::size_t> MapSaver::write(const std::shared_ptr<const MapSnapsh
   return closing ? store_.file->close(map) : store_.file->commit(map);
 }
 
-void MapSaver::back_up() {
+/// Only of what could be committed: a disk that is full has no room for a backup either.
+void MapSaver::back_up_if_due() {
+  if (config_.backup_s <= 0.0 || !store_.file || !problem().empty()) return;
+  if (std::chrono::steady_clock::now() < next_backup_) return;
   next_backup_ = std::chrono::steady_clock::now() + seconds(backup_wait_s_);
   backup_wait_s_ = std::min(config_.backup_s, 2.0 * backup_wait_s_);
-  if (!store_.file) return;
-  auto done = store_.file->copy_to(store_.path.string() + ".backup");
-  counters_.add(done ? "store.backups" : "store.backup_failures");
-  if (!done) spdlog::warn("{}", done.error().message);
+  backups_.begin();
+}
+
+/// What is promised of a kill is of a disk that takes a commit within the interval.
+void MapSaver::note_time(std::chrono::steady_clock::duration taken) {
+  if (taken <= seconds(config_.interval_s)) return;
+  counters_.add("store.late_commits");
+  const int count = repeats_.pass("late", steady_now_s());
+  if (count > 0) {
+    spdlog::warn(
+        "{}: a commit took {:.1f} s, longer than store.interval_s: so much more of the map is lost if the "
+        "process is killed{}",
+        store_.path.string(), std::chrono::duration<double>(taken).count(), repeats_text(count));
+  }
 }
 
 /// @param problem  empty: all is well

@@ -12,15 +12,17 @@
 #include "common/repeat_guard.hpp"
 #include "mapping/map_keeper.hpp"
 #include "mapping/mapping_service.hpp"
+#include "store/backup_writer.hpp"
 #include "store/map_store.hpp"
 
 namespace planemap::service {
 
 /// Writes the map into its file, on a thread of its own: what changed in each interval in one transaction, and now and
-/// then a backup beside it. What fails is counted, said, and tried again with the next interval; the mapper never
-/// waits.
+/// then has a backup made beside it. What fails is counted, said, and tried again with the next interval; the mapper
+/// never waits.
 ///
-/// Counters: store.commits, store.rows, store.failures, store.backups, store.backup_failures, store.degraded (1 or 0).
+/// Counters: store.commits, store.rows, store.failures, store.late_commits (that took longer than the interval), those
+/// of the BackupWriter, store.degraded (1 or 0).
 class MapSaver final : public MapKeeper {
  public:
   /// All that is handed in must outlive it.
@@ -37,13 +39,15 @@ class MapSaver final : public MapKeeper {
  private:
   void run(const std::stop_token& stop);
   void commit(bool closing);
+  void note_time(std::chrono::steady_clock::duration taken);
   StoreExpected<std::size_t> write(const std::shared_ptr<const MapSnapshot>& map, bool closing);
-  void back_up();
+  void back_up_if_due();
   void note(std::string problem);
 
   const StoreConfig config_;
   MappingService& mapping_;
   Counters& counters_;
+  BackupWriter backups_;
   MapStore store_;  ///< of the saver's thread alone, like the three below
   RepeatGuard repeats_;
   std::chrono::steady_clock::time_point next_backup_;

@@ -8,6 +8,7 @@ namespace planemap::service {
 namespace {
 
 constexpr int kBusyMs = 2000;
+constexpr int kPagesOfASlice = 256;
 
 [[noreturn]] void complain(sqlite3* database, int code) {
   std::string message = database != nullptr ? sqlite3_errmsg(database) : sqlite3_errstr(code);
@@ -110,15 +111,22 @@ std::string Database::answer(const std::string& sql) {
   return statement.step() ? statement.text(0) : "";
 }
 
-void Database::copy_to(const std::filesystem::path& path) {
+bool Database::copy_to(const std::filesystem::path& path, const std::stop_token& stop) {
   std::filesystem::remove(path);
   Database target(path, Access::kCreate);
+  // The read transaction keeps all slices of one state: without it each commit of another would begin the copy anew.
+  execute("BEGIN");
+  answer("SELECT count(*) FROM sqlite_master");
   sqlite3_backup* backup = sqlite3_backup_init(target.handle_.get(), "main", handle_.get(), "main");
   if (backup == nullptr) complain(target.handle_.get(), sqlite3_errcode(target.handle_.get()));
-  const int code = sqlite3_backup_step(backup, -1);
+  int code = SQLITE_OK;
+  while (code == SQLITE_OK && !stop.stop_requested()) code = sqlite3_backup_step(backup, kPagesOfASlice);
   sqlite3_backup_finish(backup);
+  execute("COMMIT");
+  if (code == SQLITE_OK) return false;
   if (code != SQLITE_DONE) complain(target.handle_.get(), code);
   target.execute("PRAGMA journal_mode=DELETE");  // one file, that can be read where nothing can be written
+  return true;
 }
 
 }  // namespace planemap::service

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 
 struct sqlite3;
@@ -63,7 +64,9 @@ class Database {
   std::string answer(const std::string& sql);  ///< first column of the first row; empty: no row
   /// Copies all of it as it is now into another file, which is written anew: SQLite's backup, consistent while others
   /// write.
-  void copy_to(const std::filesystem::path& path);
+  /// @param stop  ends it before it is done
+  /// @return whether it is done
+  bool copy_to(const std::filesystem::path& path, const std::stop_token& stop = {});
 
  private:
   struct Close {

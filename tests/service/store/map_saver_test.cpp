@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "small_maps.hpp"
 #include "store/map_reader.hpp"
@@ -41,6 +42,11 @@ class Kept {
     ASSERT_TRUE(mapped_.wait_for(lock, kLong, [&] { return done_ >= looks_; }));
   }
   Expected<void> save() { return mapping_.save(kLong); }
+  void wait_for_backups(int count) const {
+    const auto end = std::chrono::steady_clock::now() + kLong;
+    while (counter("store.backups") < count && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    EXPECT_GE(counter("store.backups"), count);
+  }
   void stop() {
     mapping_.stop();
     mapping_.set_keeper(nullptr);
@@ -161,10 +167,38 @@ TEST_F(InAFolder, AResetIsInTheBackupToo) {
   Kept kept(config_);
   kept.look();
   ASSERT_TRUE(kept.save());
+  kept.wait_for_backups(1);
   ASSERT_TRUE(kept.mapping().reset(kLong));
   ASSERT_TRUE(kept.save());
+  kept.wait_for_backups(2);
   EXPECT_EQ(MapFile::read(path_.string() + ".backup")->snapshot->cell_count(), 0u);
   EXPECT_EQ(kept.counter("store.backup_failures"), 0);
+}
+
+TEST_F(InAFolder, ABackupIsOfOneStateThoughCommitsGoOn) {
+  Kept kept(config_);
+  for (int looks = 0; looks < 8; ++looks) {
+    kept.look();
+    ASSERT_TRUE(kept.save());
+  }
+  kept.wait_for_backups(1);
+  const auto backup = MapFile::read(path_.string() + ".backup");
+  ASSERT_TRUE(backup) << backup.error().message;
+  EXPECT_LE(backup->snapshot->revision(), stored()->revision());
+  EXPECT_FALSE(std::filesystem::exists(path_.string() + ".backup.part"));
+}
+
+TEST_F(InAFolder, CommitsThatTakeLongerThanTheIntervalAreCountedAndSaid) {
+  const CapturedLog log;
+  config_.store.interval_s = 1e-6;
+  Kept kept(config_);
+  kept.look();
+  ASSERT_TRUE(kept.save());
+  kept.stop();
+  EXPECT_GE(kept.counter("store.late_commits"), 1);
+  EXPECT_NE(log.text().find("longer than store.interval_s: so much more of the map is lost if the process is killed"),
+            std::string::npos)
+      << log.text();
 }
 
 TEST_F(MapSavers, WhatCannotBeSavedIsSaidAndSavedOnceItCan) {
