@@ -29,6 +29,7 @@ void add_watch_command(CLI::App& app, Action& action);
 void add_admin_commands(CLI::App& app, Action& action);
 /// info and recover.
 void add_map_commands(CLI::App& app, Action& action);
+void add_merge_command(CLI::App& app, Action& action);
 
 /// Whether a map file could be written there, and none that is in use would be replaced; else says what is wrong.
 ExitCode check_new_map_file(const std::string& path);

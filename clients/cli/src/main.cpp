@@ -41,6 +41,7 @@ ExitCode run(int argc, char** argv) {
   add_watch_command(app, action);
   add_admin_commands(app, action);
   add_map_commands(app, action);
+  add_merge_command(app, action);
   if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
     return complain(ExitCode::kWrongUse, unknown);
   }

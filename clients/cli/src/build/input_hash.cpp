@@ -63,7 +63,18 @@ std::vector<fs::path> files_of(const fs::path& folder, std::error_code& error) {
   return files;
 }
 
+// Below 2^52: where a map is begun anew its epoch grows, and stays below 2^53, a whole number in any reader of JSON.
+std::uint64_t epoch_of(const Hash& hash) {
+  return std::max<std::uint64_t>(hash.value() >> 12u, 1);
+}
+
 }  // namespace
+
+std::uint64_t epoch_of(std::string_view text) {
+  Hash hash;
+  hash.add(text);
+  return epoch_of(hash);
+}
 
 Expected<std::uint64_t> epoch_of(const fs::path& input, std::string_view settings) {
   Hash hash;
@@ -79,9 +90,7 @@ Expected<std::uint64_t> epoch_of(const fs::path& input, std::string_view setting
   } else if (auto added = add_contents(input, hash); !added) {
     return tl::make_unexpected(added.error());
   }
-  // Below 2^52: where a map is begun anew its epoch grows, and stays below 2^53, a whole number in any reader of JSON.
-  const std::uint64_t epoch = hash.value() >> 12u;
-  return std::max<std::uint64_t>(epoch, 1);
+  return epoch_of(hash);
 }
 
 }  // namespace planemap::cli

@@ -32,15 +32,18 @@ bool Progress::due() const {
 }
 
 void Progress::show(double share, std::size_t scans, std::size_t planes) {
+  show(share, fmt::format("{} scans, {:.1f}/s, {} planes", scans,
+                          static_cast<double>(scans) / std::max(seconds(), 1e-3), planes));
+}
+
+void Progress::show(double share, const std::string& what) {
   last_ = Clock::now();
   on_screen_ = true;
   share = std::clamp(share, 0.0, 1.0);
-  const double seconds = std::chrono::duration<double>(last_ - begin_).count();
   const auto full = static_cast<std::size_t>(share * kBarWidth);
   const std::string bar = std::string(full, '#') + std::string(kBarWidth - full, '.');
-  const std::string left = share > 0.0 ? minutes_text(seconds * (1.0 - share) / share) : "?";
-  fmt::print(stderr, "\r\033[K[{}] {:3.0f} %  {} scans, {:.1f}/s, {} planes, {} left", bar, 100.0 * share, scans,
-             static_cast<double>(scans) / std::max(seconds, 1e-3), planes, left);
+  const std::string left = share > 0.0 ? minutes_text(seconds() * (1.0 - share) / share) : "?";
+  fmt::print(stderr, "\r\033[K[{}] {:3.0f} %  {}, {} left", bar, 100.0 * share, what, left);
   std::fflush(stderr);
 }
 

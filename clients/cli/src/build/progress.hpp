@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 namespace planemap::cli {
 
@@ -17,9 +18,13 @@ class Progress {
   bool due() const;
   /// @param share  of the input that is done, 0 to 1
   void show(double share, std::size_t scans, std::size_t planes);
+  /// @param what  is being done
+  void show(double share, const std::string& what);
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   bool shown_here_;
   bool on_screen_ = false;
