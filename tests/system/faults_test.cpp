@@ -196,6 +196,29 @@ TEST_F(Faults, WithoutDescriptorsClientsAreRefusedInWordsAndServedAgainLater) {
   EXPECT_EQ(planemap({"save"}).out, "the map is saved\n");
 }
 
+TEST_F(Faults, ClientsThatAreGoneWithoutAWordLoseTheirPlace) {
+  ASSERT_NO_FATAL_FAILURE(start_mapping({"--set", "grpc.max_connections=2"}));
+  const int silent = idle_connection();   // its handshake never comes
+  const int settled = idle_connection();  // a client of HTTP/2, with nothing to ask
+  ASSERT_GE(silent, 0);
+  ASSERT_GE(settled, 0);
+  const std::string hello("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\4\0\0\0\0\0\0\0\0\4\1\0\0\0\0", 42);
+  ASSERT_EQ(send(settled, hello.data(), hello.size(), 0), static_cast<ssize_t>(hello.size()));
+  ASSERT_TRUE(bus_->wait_until([&] { return bus_->counter("grpc.connections.open") == 2; }, 30s));
+  const Finished refused = planemap({"status", "--server", "127.0.0.1:7670", "--timeout", "1"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(wait_until_said("gRPC: a client was refused: there are 2 connections (grpc.max_connections = 2)"));
+  cut_off_tcp(7670);
+  // The one is given 10 s for its handshake, the other 40 s for an answer to a ping.
+  EXPECT_TRUE(bus_->wait_until([&] { return bus_->counter("grpc.connections.open") == 0; }, 90s)) << bus_->describe();
+  mend_tcp();
+  ASSERT_NO_FATAL_FAILURE(expect_mapping_goes_on());
+  const Finished status = planemap({"status", "--server", "127.0.0.1:7670"});
+  EXPECT_EQ(status.exit_code, 0) << status.err;
+  close(silent);
+  close(settled);
+}
+
 /// Copies the events of a log from scan number `first` to before `last`.
 void cut_log(const std::string& from, const std::string& to, int first, int last) {
   lcm::LogFile in(from, "r");

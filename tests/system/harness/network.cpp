@@ -73,6 +73,20 @@ void lose_datagrams(int percent) {
           .c_str());
 }
 
+void cut_off_tcp(int port) {
+  mend_tcp();
+  const std::string way = std::to_string(port) + " drop";
+  run(("nft 'add table inet cut; add chain inet cut in { type filter hook input priority 0; }; add rule inet cut in "
+       "tcp "
+       "dport " +
+       way + "; add rule inet cut in tcp sport " + way + "'")
+          .c_str());
+}
+
+void mend_tcp() {
+  run("nft 'add table inet cut; delete table inet cut'");
+}
+
 long greatest_receive_buffer() {
   return g_greatest_receive_buffer;
 }

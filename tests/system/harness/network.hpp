@@ -18,6 +18,11 @@ void remove_multicast_route();
 /// @param percent  0 to 100; 0: none
 void lose_datagrams(int percent);
 
+/// Loses all TCP to and from a port in that namespace, as where a cable was pulled, or no more. Throws
+/// std::runtime_error if `nft` fails.
+void cut_off_tcp(int port);
+void mend_tcp();
+
 /// LCM in that namespace, with a receive buffer for scans.
 extern const char* const kLcmUrl;
 
