@@ -1,4 +1,5 @@
 # Finds LCM (library and lcm-gen) without pkg-config: Debian's lcm.pc asks for glib-2.0's .pc, which liblcm-dev does not pull in.
+# The component gen is lcm-gen, which only who has .lcm files needs: find_package(LCM COMPONENTS gen).
 # Defines the target LCM::LCM, and LCM_GEN, LCM_VERSION, LCM_INCLUDE_DIR, LCM_LIBRARY.
 find_path(LCM_INCLUDE_DIR NAMES lcm/lcm-cpp.hpp)
 find_library(LCM_LIBRARY NAMES lcm)
@@ -11,7 +12,10 @@ if(LCM_INCLUDE_DIR)
 endif()
 
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(LCM REQUIRED_VARS LCM_LIBRARY LCM_INCLUDE_DIR LCM_GEN VERSION_VAR LCM_VERSION)
+if(LCM_GEN)
+  set(LCM_gen_FOUND TRUE)
+endif()
+find_package_handle_standard_args(LCM REQUIRED_VARS LCM_LIBRARY LCM_INCLUDE_DIR VERSION_VAR LCM_VERSION HANDLE_COMPONENTS)
 
 if(LCM_FOUND AND NOT TARGET LCM::LCM)
   add_library(LCM::LCM UNKNOWN IMPORTED)

@@ -21,6 +21,6 @@ function(planemap_lcm_library target package)
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
   # SYSTEM: generated code is not held to our warnings.
-  target_include_directories(${target} SYSTEM INTERFACE "${output_dir}")
+  target_include_directories(${target} SYSTEM INTERFACE "$<BUILD_INTERFACE:${output_dir}>")
   target_link_libraries(${target} INTERFACE LCM::LCM)
 endfunction()

@@ -5,13 +5,14 @@ export LC_ALL=C
 
 usage() {
   cat <<'USAGE'
-Usage: install-deps.sh [--list] [run|build|test|all]...
+Usage: install-deps.sh [--list] [run|build|package|test|all]...
 
 Installs the Debian 12 packages that planemap needs; as root, or through sudo.
-  run    to run planemapd, planemap and planemap-kinect-bridge (and the demo)
-  build  to build them
-  test   to build and run the tests and the checks of CI
-  all    all of them (default)
+  run      to run planemapd, planemap and planemap-kinect-bridge (and the demo)
+  build    to build them
+  package  to make Debian packages of them, besides build
+  test     to build and run the tests and the checks of CI
+  all      all of them (default)
 
   --list     print the packages instead of installing them
   -h, --help this text
@@ -63,12 +64,19 @@ readonly BUILD_PACKAGES=(
   protobuf-compiler-grpc
   zlib1g-dev
 )
+readonly PACKAGE_PACKAGES=(
+  dpkg-dev            # dpkg-shlibdeps
+  help2man
+)
 readonly TEST_PACKAGES=(
+  bash-completion
   chromium            # shows the viewer's page
   clang               # the fuzz targets
   clang-format
   clang-tidy
+  debootstrap         # a Debian to install the packages into
   git                 # CI asks it which files are the project's
+  help2man            # manual pages
   iproute2
   jq
   libclang-rt-14-dev  # libFuzzer and the sanitizers of clang
@@ -78,6 +86,8 @@ readonly TEST_PACKAGES=(
   libxml2-utils       # xmllint: is the floor plan well-formed?
   liblcm-bin          # lcm-logplayer, lcm-logger
   liboctomap-dev      # a peer, for planemap-bench
+  lintian             # looks at the packages
+  man-db
   nftables            # loses datagrams on purpose
   mypy                # types of the Python package
   openssl             # certificates of the tests
@@ -87,7 +97,9 @@ readonly TEST_PACKAGES=(
   python3-numpy
   python3-protobuf
   python3-pytest
+  python3-yaml        # reads the compose file
   shellcheck
+  systemd             # systemd-analyze
   util-linux
 )
 
@@ -150,8 +162,8 @@ main() {
     case $argument in
       -h | --help) usage; exit 0 ;;
       --list) list_only=1 ;;
-      run | build | test | all) groups+=("$argument") ;;
-      *) usage >&2; die "what is '$argument'? It takes run, build, test and all." 2 ;;
+      run | build | package | test | all) groups+=("$argument") ;;
+      *) usage >&2; die "what is '$argument'? It takes run, build, package, test and all." 2 ;;
     esac
   done
   ((${#groups[@]})) || groups=(all)
@@ -159,8 +171,9 @@ main() {
     case $group in
       run) packages+=("${RUN_PACKAGES[@]}") ;;
       build) packages+=("${BUILD_PACKAGES[@]}"); needs_npm=1 ;;
+      package) packages+=("${PACKAGE_PACKAGES[@]}") ;;
       test) packages+=("${TEST_PACKAGES[@]}") ;;
-      all) packages+=("${RUN_PACKAGES[@]}" "${BUILD_PACKAGES[@]}" "${TEST_PACKAGES[@]}"); needs_npm=1 ;;
+      all) packages+=("${RUN_PACKAGES[@]}" "${BUILD_PACKAGES[@]}" "${PACKAGE_PACKAGES[@]}" "${TEST_PACKAGES[@]}"); needs_npm=1 ;;
     esac
   done
   # npm builds the viewer's page. Debian's package conflicts where node and npm come from elsewhere, so only where there is none.
