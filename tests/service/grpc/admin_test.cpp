@@ -114,7 +114,7 @@ TEST(Admin, ResetSaysThatTheMapperIsBusy) {
   v1::ResetResponse response;
   const auto status = daemon.admin()->Reset(new_context().get(), {}, &response);  // which gives up after 5 s
   release.set_value();
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_EQ(status.error_message(), "the mapper is busy with a scan; the new map begins once that is mapped");
 }
 

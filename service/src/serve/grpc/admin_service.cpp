@@ -32,7 +32,9 @@ grpc::ServerUnaryReactor* AdminService::Reset(grpc::CallbackServerContext* conte
     spdlog::info("gRPC: {} asks for a new map", context->peer());
     const auto epoch = mapping_.reset(kResetTimeout);
     if (!epoch) {
-      return {grpc::StatusCode::UNAVAILABLE, "the mapper is busy with a scan; the new map begins once that is mapped"};
+      // Not UNAVAILABLE, of which clients make "cannot be reached", and which is asked again.
+      return {grpc::StatusCode::FAILED_PRECONDITION,
+              "the mapper is busy with a scan; the new map begins once that is mapped"};
     }
     response->set_epoch(*epoch);
     if (!mapping_.has_keeper()) return grpc::Status::OK;
