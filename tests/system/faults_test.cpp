@@ -34,7 +34,10 @@ class Faults : public SystemTest {
   void start_mapping(const std::vector<std::string>& more = {}, std::vector<std::string> before = {}) {
     std::vector<std::string> arguments = {"--map", map_, "--set", "store.interval_s=0.2"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    before.insert(before.end(), {"env", "LD_PRELOAD=" PLANEMAP_FAULT_SHIM, "PLANEMAP_FAULTS=" + switches_.string()});
+    const char* set = std::getenv("ASAN_OPTIONS");
+    const std::string asan_options = set == nullptr ? "" : set;
+    before.insert(before.end(), {"env", "LD_PRELOAD=" PLANEMAP_FAULT_SHIM, "PLANEMAP_FAULTS=" + switches_.string(),
+                                 "ASAN_OPTIONS=" + asan_options + ":verify_asan_link_order=0"});
     ASSERT_NO_FATAL_FAILURE(start_daemon(arguments, before));
     start_kinect();
     ASSERT_TRUE(bus_->wait_until(
