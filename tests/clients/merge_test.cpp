@@ -1,10 +1,14 @@
 // planemap merge, by running the program: on the halves of a log, and on maps that do not go together.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
+#include <planemap/block.hpp>
+#include <planemap/mapper.hpp>
 #include <string>
 #include <vector>
 
@@ -131,6 +135,31 @@ TEST_F(Merging, TheSameMapsGiveTheSameSum) {
             service::essence(*MapFile::read(file("two.planemap"))->snapshot));
 }
 
+TEST_F(Merging, ManyMapsAreAddedUpInOneGo) {
+  const auto points = [](const service::Snapshot& map) {
+    double sum = 0.0;
+    for (const auto& block : map->blocks()) {
+      for (std::size_t i = 0; i < block->size(); ++i) sum += block->cell(i).sums.count;
+    }
+    return sum;
+  };
+  std::vector<std::string> arguments = {"merge", "-o", file("sum.planemap"), "--quiet"};
+  double all = 0.0;
+  for (const std::uint64_t epoch : {7, 8, 9}) {
+    const std::string name = std::to_string(epoch) + ".planemap";
+    write(name, epoch, {});
+    arguments.push_back(file(name));
+    all += points(MapFile::read(file(name))->snapshot);
+  }
+  const Finished merged = planemap(arguments);
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  const auto sum = MapFile::read(file("sum.planemap"));
+  ASSERT_TRUE(sum) << sum.error().message;
+  EXPECT_EQ(points(sum->snapshot), all);
+  EXPECT_GT(sum->snapshot->planes().size(), MapFile::read(file("7.planemap"))->snapshot->planes().size())
+      << "cells that no map alone had seen often enough";
+}
+
 TEST_F(Merging, ATransformPlacesTheSecondMap) {
   write("a.planemap", 7, {"hall", "", "", ""});
   write("b.planemap", 8, {"office", "0 1 0", "", ""});  // gravity of a frame that is turned about x
@@ -163,6 +192,9 @@ TEST_F(Merging, MapsThatDoNotGoTogetherAreRefusedInWords) {
   write("newer.planemap", 11, {});
   Database(file("newer.planemap"), Database::Access::kWrite)
       .execute("PRAGMA user_version=99; UPDATE meta SET value='99' WHERE key='format'");
+  write("damaged.planemap", 14, {});
+  Database(file("damaged.planemap"), Database::Access::kWrite)
+      .execute("UPDATE block SET checksum=checksum+1 WHERE slot=3");
   write("strange.planemap", 12, {"world", "", "grid: {colour: 3}", ""});
   MapperConfig coarse;
   coarse.grid.cell_size_m = 0.1;
@@ -179,6 +211,7 @@ TEST_F(Merging, MapsThatDoNotGoTogetherAreRefusedInWords) {
                              ": grid.density_threshold: 20, not 12; wear.after_s: 7, not "},
       {"tilted.planemap", "their directions of gravity are 26.6 degrees apart in the first one's frame"},
       {"newer.planemap", "was written by a newer planemap (format 99, this one knows up to 1)"},
+      {"damaged.planemap", "damaged.planemap: block 3: its checksum is wrong"},
       {"strange.planemap", "strange.planemap:1: grid.colour"},
       {"coarse.planemap", "have cells of 0.08 m and 0.1 m: cells of different sizes do not add up"},
   };
