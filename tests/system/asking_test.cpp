@@ -63,6 +63,9 @@ TEST_F(Asking, EveryQuestionIsAnsweredInWordsAndInJson) {
   ASSERT_EQ(near["planes"].size(), 3u);
   EXPECT_NEAR(near["planes"][0]["surfaceDistance"].get<double>(), 0.0, 1e-3);
   EXPECT_GE(near["planes"][0]["sigma"].get<double>(), 0.01);
+  const auto by_covariance = json_of({"nearest", "--point", corner[0], corner[1], corner[2], "--covariance", "1e-4",
+                                      "0", "0", "0", "1e-4", "0", "0", "0", "1e-4"});
+  EXPECT_NEAR(by_covariance["planes"][0]["sigma"].get<double>(), near["planes"][0]["sigma"].get<double>(), 1e-9);
   EXPECT_NE(planemap({"nearest", "--point", corner[0], corner[1], corner[2]}).out.find("mahalanobis"),
             std::string::npos);
   EXPECT_EQ(planemap({"nearest", "--point", "500", "0", "0", "--max-distance", "1"}).out, "no plane is near\n");

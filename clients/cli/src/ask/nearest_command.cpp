@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct NearestCommand {
   QueryOptions query;
   std::vector<double> point_m;
   double sigma_m = 0.0;
+  std::vector<double> covariance_m2;  ///< 3x3, row-major; empty: none
   std::int32_t count = 5;
   double max_distance_m = 0.0;  ///< 0: no limit
 };
@@ -53,6 +55,7 @@ ExitCode run(const NearestCommand& command) {
   client::QueryPoint point;
   point.point_m = vector_at(command.point_m, 0);
   point.sigma_m = command.sigma_m;
+  std::copy(command.covariance_m2.begin(), command.covariance_m2.end(), point.covariance_m2.begin());
   client::NearestOptions options;
   options.count = command.count;
   if (command.max_distance_m > 0.0) options.max_distance_m = command.max_distance_m;
@@ -74,6 +77,10 @@ void add_nearest_command(CLI::App& app, Action& action) {
   command->add_option("--sigma", options->sigma_m, "Standard deviation of the point, metres")
       ->type_name("M")
       ->check(not_negative_number());
+  add_numbers(*command, "--covariance", options->covariance_m2, 9,
+              "Covariance of the point, row by row, square metres; instead of --sigma", "XX XY XZ YX YY YZ ZX ZY ZZ",
+              false);
+  command->get_option("--covariance")->excludes("--sigma");
   command->add_option("--count", options->count, "Planes, at most")
       ->type_name("N")
       ->check(whole_number(1, 1000))
