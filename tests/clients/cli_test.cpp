@@ -112,7 +112,7 @@ TEST_F(CliTest, WrongUseIsTwoAndSaysWhatIsWrong) {
       {"nearest --point 0 0 0 --count 1001", "--count: must be a whole number from 1 to 1000, is '1001'"},
       {"nearest --point 0 0 0 --max-distance -1", "--max-distance: must be greater than 0 and finite, is -1"},
       {"nearest --point 0 0 0 --sigma -1", "--sigma: must be at least 0 and finite, is -1"},
-      {"nearest --point 0 0 0 --sigma 1 --covariance 1 0 0 0 1 0 0 0 1", "--covariance excludes --sigma"},
+      {"nearest --point 0 0 0 --sigma 1 --covariance 1 0 0 0 1 0 0 0 1", "--sigma excludes --covariance"},
       {"nearest --point 0 0 -s robot", "--point: '-s' is no number"},
       {"nearest --point nan 0 0", "--point: must be a finite number, is nan"},
       {"ray --from 0 0 0 --direction 0 0 0", "--direction: must not be zero"},

@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kBacklog = 128;
 constexpr double kWarnPeriodS = 5.0;
+constexpr const char* kNoDescriptor = "no file descriptor is left (raise the limit of open files)";
 
 std::uint16_t port_of(int socket) {
   sockaddr_storage address{};
@@ -154,8 +155,7 @@ void ConnectionGate::accept_from(int listener) {
   const int connection = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (connection < 0) {
     if (errno != EMFILE && errno != ENFILE) return;  // the client has gone again
-    counters_.add("grpc.connections.refused");
-    say("descriptors", "a client was refused: no file descriptor is left (raise the limit of open files)");
+    refuse("descriptors", kNoDescriptor);
     // Else the client would wait, and poll() would not.
     close(spare_);
     const int refused = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
@@ -163,12 +163,16 @@ void ConnectionGate::accept_from(int listener) {
     spare_ = open_spare();
     return;
   }
-  const int watched = connections_.size() < max_connections_ ? fcntl(connection, F_DUPFD_CLOEXEC, 0) : -1;
+  const bool is_full = connections_.size() >= max_connections_;
+  const int watched = is_full ? -1 : fcntl(connection, F_DUPFD_CLOEXEC, 0);
   if (watched < 0) {
-    counters_.add("grpc.connections.refused");  // before the client can know
+    if (is_full) {
+      refuse("full", "there are " + std::to_string(connections_.size()) +
+                         " connections (grpc.max_connections = " + std::to_string(max_connections_) + ")");
+    } else {
+      refuse("descriptors", kNoDescriptor);
+    }
     close(connection);
-    say("full", "a client was refused: there are " + std::to_string(connections_.size()) +
-                    " connections (grpc.max_connections = " + std::to_string(max_connections_) + ")");
     return;
   }
   const int on = 1;
@@ -177,6 +181,12 @@ void ConnectionGate::accept_from(int listener) {
   counters_.set("grpc.connections.open", static_cast<std::int64_t>(connections_.size()));
   counters_.add("grpc.connections.accepted");
   hand_on_(listener, connection);
+}
+
+/// Call it before the client can know.
+void ConnectionGate::refuse(const char* kind, const std::string& why) {
+  counters_.add("grpc.connections.refused");
+  say(kind, "a client was refused: " + why);
 }
 
 void ConnectionGate::say(const char* kind, const std::string& text) {

@@ -41,6 +41,7 @@ class ConnectionGate {
   Expected<void> listen_on(const ListenAddress& address);
   void run();
   void accept_from(int listener);
+  void refuse(const char* kind, const std::string& why);
   void say(const char* kind, const std::string& text);
 
   const std::size_t max_connections_;
