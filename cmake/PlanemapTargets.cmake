@@ -22,8 +22,10 @@ endif()
 
 find_program(PLANEMAP_CCACHE ccache)
 if(PLANEMAP_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Without these two ccache passes over everything that uses a precompiled header.
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${PLANEMAP_CCACHE}")
+  # Without these two ccache passes over everything that uses a precompiled header; with the base, what one clone has
+  # compiled serves the next one.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+      "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 "${PLANEMAP_CCACHE}")
 endif()
 
 # planemap_precompiled_headers(name header...)
