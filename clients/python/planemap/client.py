@@ -191,7 +191,9 @@ class Client:
         def ask(
             begin: int, end: int, map: map_pb2.MapVersion | None
         ) -> tuple[map_pb2.MapVersion, list[queries_pb2.NearPlanes]]:
-            request = queries_pb2.NearestPlanesRequest(count=count, filter=_filter(filter), map=map)
+            request = queries_pb2.NearestPlanesRequest(
+                count=count, filter=_filter(filter), map=map, more_follow=end < len(points)
+            )
             if max_distance_m is not None:
                 request.max_distance_m = max_distance_m
             for i in range(begin, end):
@@ -233,7 +235,11 @@ class Client:
             begin: int, end: int, map: map_pb2.MapVersion | None
         ) -> tuple[map_pb2.MapVersion, list[queries_pb2.RayHits]]:
             request = queries_pb2.CastRaysRequest(
-                skip_planes=not planes, skip_cells=not cells, filter=_filter(filter), map=map
+                skip_planes=not planes,
+                skip_cells=not cells,
+                filter=_filter(filter),
+                map=map,
+                more_follow=end < n,
             )
             for i in range(begin, end):
                 ray = request.rays.add()

@@ -284,14 +284,17 @@ TEST_F(Calls, AnotherEpochIsRefusedEverywhere) {
 }
 
 TEST_F(Calls, ABatchInSeveralCallsIsAnsweredByOneMap) {
+  auto request = nearest_request();
+  request.set_more_follow(true);
   v1::NearestPlanesResponse first;
-  ASSERT_TRUE(stub_->NearestPlanes(new_context().get(), nearest_request(), &first).ok());
+  ASSERT_TRUE(stub_->NearestPlanes(new_context().get(), request, &first).ok());
+  request.set_more_follow(false);
   v1::CastRaysRequest rays;
+  rays.set_more_follow(true);
   rays.add_rays()->mutable_direction()->set_z(1.0);
   v1::CastRaysResponse first_hits;
   ASSERT_TRUE(stub_->CastRays(new_context().get(), rays, &first_hits).ok());
   daemon_.map_walls(3, 1040);
-  auto request = nearest_request();
   v1::NearestPlanesResponse newest;
   ASSERT_TRUE(stub_->NearestPlanes(new_context().get(), request, &newest).ok());
   EXPECT_GT(newest.map().revision(), first.map().revision());

@@ -77,10 +77,13 @@ TEST_F(KeptIndexes, AreTheLastOnesThatWereAskedFor) {
   for (std::size_t i = 0; i < IndexKeeper::kKeptIndexes; ++i) {
     map_one();
     given.push_back(keeper.current());
+    keeper.keep(given.back());
     EXPECT_EQ(again(keeper, *given[0]), given[0]) << i;
   }
   map_one();
   given.push_back(keeper.current());
+  EXPECT_EQ(again(keeper, *given.back()), nullptr) << "nobody asked for it to be kept";
+  keeper.keep(given.back());
   EXPECT_EQ(again(keeper, *given[1]), nullptr) << "the one for which nobody asked the longest";
   for (const std::size_t i : {0, 2, 8}) EXPECT_EQ(again(keeper, *given[i]), given[i]) << i;
   EXPECT_EQ(keeper.of_version(2, given[0]->snapshot().revision(), given[0]->snapshot().utime()), nullptr);
@@ -90,7 +93,11 @@ TEST_F(KeptIndexes, AreLetGoWhenNobodyAsksForThem) {
   IndexKeeper keeper(
       config_, mapping_, [](const auto&) {}, 0.02);
   map_one();
-  const std::weak_ptr<const MapIndex> old = keeper.current();
+  const std::weak_ptr<const MapIndex> old = [&] {
+    auto index = keeper.current();
+    keeper.keep(index);
+    return index;
+  }();
   map_one();
   keeper.current();
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);

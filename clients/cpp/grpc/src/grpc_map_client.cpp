@@ -76,6 +76,7 @@ Expected<NearestAnswer> GrpcMapClient::nearest(std::span<const QueryPoint> point
   const auto ask_part = [&](std::span<const QueryPoint> part, const MapVersion& version,
                             milliseconds left) -> Expected<MapVersion> {
     v1::NearestPlanesRequest request = nearest_message(part, options);
+    request.set_more_follow(&part.back() != &points.back());
     if (version.epoch != 0) *request.mutable_map() = map;
     const auto response = call(*channel_, request, left, &v1::PlaneMap::Stub::NearestPlanes);
     if (!response) return tl::make_unexpected(response.error());
@@ -101,6 +102,7 @@ Expected<CastAnswer> GrpcMapClient::cast(std::span<const Ray> rays, const CastOp
   const auto ask_part = [&](std::span<const Ray> part, const MapVersion& version,
                             milliseconds left) -> Expected<MapVersion> {
     v1::CastRaysRequest request = rays_message(part, options);
+    request.set_more_follow(&part.back() != &rays.back());
     if (version.epoch != 0) *request.mutable_map() = map;
     const auto response = call(*channel_, request, left, &v1::PlaneMap::Stub::CastRays);
     if (!response) return tl::make_unexpected(response.error());

@@ -35,11 +35,9 @@ void IndexKeeper::stop() {
   built_.notify_all();
 }
 
-std::shared_ptr<const MapIndex> IndexKeeper::current() {
-  std::unique_lock lock(mutex_);
-  auto index = newest_index(lock);
-  if (index) keep(index, steady_now_s());
-  return index;
+void IndexKeeper::keep(const std::shared_ptr<const MapIndex>& index) {
+  const std::lock_guard lock(mutex_);
+  keep_locked(index, steady_now_s());
 }
 
 std::shared_ptr<const MapIndex> IndexKeeper::of_version(std::uint64_t epoch, std::uint64_t revision,
@@ -52,12 +50,12 @@ std::shared_ptr<const MapIndex> IndexKeeper::of_version(std::uint64_t epoch, std
   });
   if (found == kept_.end()) return nullptr;
   auto index = found->index;
-  keep(index, steady_now_s());
+  keep_locked(index, steady_now_s());
   return index;
 }
 
 /// Puts an index in front of those that are kept.
-void IndexKeeper::keep(const std::shared_ptr<const MapIndex>& index, double now_s) {
+void IndexKeeper::keep_locked(const std::shared_ptr<const MapIndex>& index, double now_s) {
   if (kept_.empty()) woken_.notify_all();  // the thread forgets it when its time has come
   std::erase_if(kept_, [&](const Kept& kept) { return kept.index == index; });
   kept_.push_front({index, now_s});
@@ -68,7 +66,8 @@ void IndexKeeper::forget_old(double now_s) {
   while (!kept_.empty() && kept_.back().asked_at_s + kept_s_ <= now_s) kept_.pop_back();
 }
 
-std::shared_ptr<const MapIndex> IndexKeeper::newest_index(std::unique_lock<std::mutex>& lock) {
+std::shared_ptr<const MapIndex> IndexKeeper::current() {
+  std::unique_lock lock(mutex_);
   const auto newest = mapping_.snapshot();
   if (index_ && &index_->snapshot() == newest.get()) return index_;
   const double now_s = steady_now_s();

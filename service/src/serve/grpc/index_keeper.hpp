@@ -35,8 +35,10 @@ class IndexKeeper {
   /// An index of the newest snapshot, or of one that was the newest at most grpc.index_age_s ago; never of another
   /// epoch than the newest. Waits while it is made.
   std::shared_ptr<const MapIndex> current();
-  /// That of an answer before, or nullptr: it is kept no more, or of another epoch than the newest. The last
-  /// kKeptIndexes that current() gave are kept, each for a while after it was last asked for.
+  /// Keeps an index for of_version(): the last kKeptIndexes, each for a while after it was last asked for. An index
+  /// holds its map's memory, also that of what has changed since.
+  void keep(const std::shared_ptr<const MapIndex>& index);
+  /// One that is kept, or nullptr: it is kept no more, or of another epoch than the newest.
   std::shared_ptr<const MapIndex> of_version(std::uint64_t epoch, std::uint64_t revision, std::int64_t utime);
   /// There is a new snapshot. Returns at once; from any thread.
   void wake();
@@ -52,8 +54,7 @@ class IndexKeeper {
     double asked_at_s = 0.0;
   };
 
-  std::shared_ptr<const MapIndex> newest_index(std::unique_lock<std::mutex>& lock);
-  void keep(const std::shared_ptr<const MapIndex>& index, double now_s);
+  void keep_locked(const std::shared_ptr<const MapIndex>& index, double now_s);
   void forget_old(double now_s);
   void run(const std::stop_token& stop);
   bool has_to_build(double now_s) const;

@@ -63,7 +63,11 @@ template <class BatchRequest>
 PlaneMapService::Choose PlaneMapService::index_of_batch(const BatchRequest& request) {
   return [this, &request](grpc::Status& status) -> std::shared_ptr<const MapIndex> {
     const std::uint64_t epoch = request.filter().epoch();
-    if (!request.has_map()) return index_for(epoch, status);
+    if (!request.has_map()) {
+      auto newest = index_for(epoch, status);
+      if (newest && request.more_follow()) keeper_.keep(newest);
+      return newest;
+    }
     const v1::MapVersion& map = request.map();
     if (epoch != 0 && epoch != map.epoch()) {
       status = {grpc::StatusCode::INVALID_ARGUMENT,
