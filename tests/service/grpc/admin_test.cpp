@@ -98,11 +98,11 @@ TEST(Admin, ResetDropsWhatWaitsForABusyMapper) {
 }
 
 TEST(Admin, ResetSaysThatTheMapperIsBusy) {
-  TestDaemon daemon;
   std::promise<void> release;
   const auto released = release.get_future().share();
   std::promise<void> busy;
   std::once_flag once;
+  TestDaemon daemon;  // last: the mapper uses what is before until it ends
   daemon.service().set_snapshot_listener([&] {
     std::call_once(once, [&] { busy.set_value(); });
     released.wait();
