@@ -3,6 +3,7 @@
 #include <planemap/test/health.grpc.pb.h>
 #include <planemap/test/reflection.pb.h>
 
+#include <atomic>
 #include <future>
 #include <set>
 
@@ -71,26 +72,36 @@ TEST(Admin, ResetBeginsAnEmptyMapOfAGreaterEpoch) {
   EXPECT_EQ(unaccounted(daemon.service().counters()), 0);
 }
 
+/// Holds a daemon's mapper with the first scan that it maps. Must outlive the daemon.
+class BusyMapper {
+ public:
+  void keep_busy(TestDaemon& daemon) {
+    daemon.service().set_snapshot_listener([this] {
+      is_busy_ = true;
+      released_.wait();
+    });
+  }
+  bool is_busy() const { return is_busy_; }
+  void release() { release_.set_value(); }
+
+ private:
+  std::atomic<bool> is_busy_ = false;
+  std::promise<void> release_;
+  const std::shared_future<void> released_ = release_.get_future().share();
+};
+
 TEST(Admin, ResetDropsWhatWaitsForABusyMapper) {
-  std::promise<void> release;
-  const auto released = release.get_future().share();
-  std::promise<void> busy;
-  std::once_flag once;
+  BusyMapper mapper;
   TestDaemon daemon;  // last: the mapper uses what is before until it ends
-  daemon.service().set_snapshot_listener([&] {
-    std::call_once(once, [&] { busy.set_value(); });
-    released.wait();
-  });
+  mapper.keep_busy(daemon);
   daemon.send_walls(5);
-  const auto is_busy = busy.get_future();
-  ASSERT_TRUE(
-      daemon.handle_until([&] { return is_busy.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }));
+  ASSERT_TRUE(daemon.handle_until([&] { return mapper.is_busy(); }));
   ASSERT_TRUE(daemon.handle_until([&] { return daemon.service().mapping().stats(0.0).queued == 4u; }));
   v1::ResetResponse response;
   auto reset =
       std::async(std::launch::async, [&] { return daemon.admin()->Reset(new_context().get(), {}, &response); });
   ASSERT_TRUE(daemon.handle_until([&] { return daemon.counter("scans.dropped.reset") == 4; }));
-  release.set_value();
+  mapper.release();
   const auto status = reset.get();
   EXPECT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(daemon.counter("scans.mapped"), 1);
@@ -98,22 +109,14 @@ TEST(Admin, ResetDropsWhatWaitsForABusyMapper) {
 }
 
 TEST(Admin, ResetSaysThatTheMapperIsBusy) {
-  std::promise<void> release;
-  const auto released = release.get_future().share();
-  std::promise<void> busy;
-  std::once_flag once;
+  BusyMapper mapper;
   TestDaemon daemon;  // last: the mapper uses what is before until it ends
-  daemon.service().set_snapshot_listener([&] {
-    std::call_once(once, [&] { busy.set_value(); });
-    released.wait();
-  });
+  mapper.keep_busy(daemon);
   daemon.send_walls(1);
-  const auto is_busy = busy.get_future();
-  ASSERT_TRUE(
-      daemon.handle_until([&] { return is_busy.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }));
+  ASSERT_TRUE(daemon.handle_until([&] { return mapper.is_busy(); }));
   v1::ResetResponse response;
   const auto status = daemon.admin()->Reset(new_context().get(), {}, &response);  // which gives up after 5 s
-  release.set_value();
+  mapper.release();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_EQ(status.error_message(), "the mapper is busy with a scan; the new map begins once that is mapped");
 }

@@ -1,11 +1,9 @@
 #include "soak/soak_run.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <planemap/client/grpc_connection.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -25,7 +23,6 @@ using std::chrono_literals::operator""s;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint16_t kHttpPort = 7671;
-constexpr const char* kGrpcAddress = "127.0.0.1:7670";
 constexpr auto kSamplePeriod = 500ms;
 
 double seconds_since(Clock::time_point begin) {
@@ -70,14 +67,6 @@ std::vector<std::string> kinect_command(const SoakConfig& config) {
           kLcmUrl};
 }
 
-double resident_bytes(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/statm");
-  double size_pages = 0.0;
-  double resident_pages = 0.0;
-  file >> size_pages >> resident_pages;
-  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
 /// A metric without labels. Throws std::runtime_error where the daemon does not tell it.
 double metric(const std::string& page, const std::string& name) {
   std::istringstream lines(page);
@@ -87,10 +76,10 @@ double metric(const std::string& page, const std::string& name) {
   throw std::runtime_error("/metrics has no " + name);
 }
 
-SoakSample look_at(const Process& daemon, double at_s) {
+SoakSample look_at(double at_s) {
   const HttpReply reply = http_get(kHttpPort, "/metrics");
   if (reply.status != 200) throw std::runtime_error("/metrics: status " + std::to_string(reply.status));
-  return {at_s, resident_bytes(daemon.pid()), metric(reply.body, "planemap_heap_used_bytes"),
+  return {at_s, metric(reply.body, "process_resident_memory_bytes"), metric(reply.body, "planemap_heap_used_bytes"),
           static_cast<std::int64_t>(metric(reply.body, "planemap_map_cells")),
           static_cast<std::int64_t>(metric(reply.body, "planemap_scan_seconds_count"))};
 }
@@ -122,12 +111,12 @@ SoakResult run_soak(const SoakConfig& config, const std::function<void(const Soa
 
   SoakResult result;
   {
-    const Visitors visitors(kLcmUrl, kGrpcAddress, kHttpPort, config.seed);
+    const Visitors visitors(kLcmUrl, client::kDefaultServer, kHttpPort, config.seed);
     const auto begin = Clock::now();
     for (double at_s = 0.0; at_s < 60.0 * config.minutes; at_s = seconds_since(begin)) {
       fail_if_ended(daemon, "planemapd");
       fail_if_ended(kinect, "the Kinect bridge");
-      result.samples.push_back(look_at(daemon, at_s));
+      result.samples.push_back(look_at(at_s));
       progress(result.samples.back());
       bus.listen_for(kSamplePeriod);
     }
